@@ -19,7 +19,7 @@ from helpers.command_line import Done, radhar
 from helpers.covering import combinations_of, covering_rows
 from helpers.random_configs import KEYS
 from helpers.recorded import frames, write_bvh
-from helpers.slow import slow
+from helpers.slow import slow, slow_but
 
 from radhar_cli.config import load_config
 from radhar_cli.errors import ConfigError
@@ -345,7 +345,7 @@ def test_rows_hold_all_pairs() -> None:
     assert len(PAIRS) < 2 * SIZES[0] * sorted(SIZES)[-2]
 
 
-@pytest.mark.parametrize("part", range(PARTS))
+@pytest.mark.parametrize("part", slow_but(range(PARTS), (0, 2)))
 def test_every_pair_of_options_runs_or_is_refused_in_a_line(part: int, folder: Path) -> None:
     rows = [named(levels) for levels in PAIRS[part::PARTS]]
     ended = run_all(rows, folder)

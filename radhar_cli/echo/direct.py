@@ -45,6 +45,8 @@ CUBIC = 3  # degree of phases between knots
 # Rounding of slowly turning phasors in float32, and by how much it must stay below the tolerance.
 SINGLE_ROUNDING_DB, ROUNDING_SPARE_DB = -132.0, 10.0
 SAMPLED = 64
+# Largest amplitude at the knots from which float32 holds any amplitude between them in its units.
+FAINTEST_SINGLE = 1e-30
 
 
 class Accuracy(NamedTuple):
@@ -101,7 +103,10 @@ class DirectEcho:
         aim = first_aim(self.tolerance_db)
         chosen, motion = self._settings(aim), self._motion
         while True:
-            chosen = chosen._replace(single=chosen.single and self._single_will_do(motion))
+            is_faint = 0 < motion.largest < FAINTEST_SINGLE
+            chosen = chosen._replace(
+                single=chosen.single and not is_faint and self._single_will_do(motion)
+            )
             unit = 2.0 ** frexp(motion.largest)[1]
             y = self._sum(chosen, motion, unit)
             error = self._error(y, motion, unit)

@@ -12,7 +12,7 @@ import h5py
 import numpy as np
 import pytest
 from helpers.command_line import ROOT, radhar
-from helpers.slow import examples
+from helpers.slow import examples, slow
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from scipy.io import savemat
@@ -317,7 +317,7 @@ print((resource.getrusage(resource.RUSAGE_SELF).ru_maxrss - before) / 1024)
 """
 
 
-@pytest.mark.parametrize("kind", ["bin", "npy", "h5"])
+@pytest.mark.parametrize("kind", ["bin", *slow(["npy", "h5"])])
 def test_memory_does_not_grow_with_the_capture(tmp_path: Path, kind: str) -> None:
     """64 MiB of samples need no more memory than 16; a sparse file stands for a capture."""
     for name, pulses in (("small", 4096), ("large", 16_384)):

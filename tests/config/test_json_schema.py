@@ -1,6 +1,7 @@
 """`radhar config schema`: what is shipped fits it, mistakes do not, and keys are described."""
 
 import json
+from functools import cache
 from pathlib import Path
 
 import jsonschema
@@ -11,16 +12,20 @@ from radhar_cli.config import Config
 from radhar_cli.config.json_schema import json_schema
 from radhar_cli.config.yaml_reader import parse_yaml
 from radhar_cli.learning.settings import TrainConfig
+from radhar_cli.schema.section import Section
 
 FILES = sorted((ROOT / "configs").rglob("*.yaml"))
-KINDS = {False: Config, True: TrainConfig}
-CHECKS = {train: jsonschema.Draft202012Validator(json_schema(KINDS[train])) for train in KINDS}
+
+
+@cache
+def check(kind: type[Section]) -> jsonschema.Draft202012Validator:
+    return jsonschema.Draft202012Validator(json_schema(kind))
 
 
 @pytest.mark.parametrize("path", FILES, ids=lambda path: path.stem)
 def test_every_shipped_config_fits(path: Path) -> None:
     document, _ = parse_yaml(path.read_text(), str(path))
-    CHECKS[path.parent.name == "train"].validate(document)
+    check(TrainConfig if path.parent.name == "train" else Config).validate(document)
 
 
 @pytest.mark.parametrize(
@@ -35,7 +40,7 @@ def test_every_shipped_config_fits(path: Path) -> None:
 )
 def test_a_mistake_does_not(wrong: dict[str, object]) -> None:
     with pytest.raises(jsonschema.ValidationError):
-        CHECKS[False].validate(wrong)
+        check(Config).validate(wrong)
 
 
 def test_keys_are_described(tmp_path: Path) -> None:
@@ -44,10 +49,9 @@ def test_keys_are_described(tmp_path: Path) -> None:
     assert "yaml-language-server: $schema=" in done.stdout
     schema = json.loads((tmp_path / "schema.json").read_text())
     assert json.loads(radhar("config", "schema").stdout) == schema
-    for part, kind in ((schema, Config),):
-        assert all(
-            part["properties"][key]["description"] == " ".join(text.split())
-            for key, text in kind.descriptions().items()
-            if key in part["properties"]
-        )
+    assert all(
+        schema["properties"][key]["description"] == " ".join(text.split())
+        for key, text in Config.descriptions().items()
+        if key in schema["properties"]
+    )
     assert "chirps" in schema["$defs"]["FmcwRadar"]["properties"]["prf_hz"]["description"].lower()

@@ -12,6 +12,7 @@ from radhar_cli.config.data_set import Config
 from radhar_cli.echo import gated
 from radhar_cli.echo.accuracy import AccuracyError, Settings
 from radhar_cli.echo.beat import beat_matrix
+from radhar_cli.echo.direct import DirectEcho
 from radhar_cli.echo.gated import GatedEcho, kernel
 from radhar_cli.echo.knots import Spacing
 from radhar_cli.echo.paths import Paths
@@ -218,3 +219,16 @@ def test_many_polynomials_are_left_as_they_are(monkeypatch, tolerance_db):
     combined = echo(tolerance_db).rows()[0]
     monkeypatch.setattr(gated, "MAX_POLYNOMIALS", 0)
     assert ref.error_db(echo(tolerance_db).rows()[0], combined) < tolerance_db - 10
+
+
+@pytest.mark.parametrize("kind", [DirectEcho, GatedEcho])
+def test_paths_that_are_all_but_gone_at_knots_do_not_overflow(kind):
+    """An opaque wall leaves 1e-137; float32 holds no path between knots that passes beside it."""
+    w = Waveform(1e9, 1e9, 1e-5, 64e5, 100, 1.0)
+    more = {"bins": slice(0, w.n_bins)} if kind is GatedEcho else {}
+    walk = ref.Points(lambda t: np.stack([2 + 1.5 * t, 2.3 + 1.4 * t]))
+    faint, strong = (kind(replace(walk, strength=s), w, -80.0, **more) for s in (1e-137, 1.0))
+    (_, accuracy), (_, usual) = faint.rows(), strong.rows()
+    assert not accuracy.single
+    assert accuracy.error_db < -80
+    assert usual.error_db < -80

@@ -170,7 +170,7 @@ def test_range_power(kind: str) -> None:
 
 def test_squares_beyond_a_double_overflow_with_a_warning() -> None:
     """|S| from 1.4e154 on: NumPy warns of the overflow and the map is infinite."""
-    with pytest.warns(RuntimeWarning, match="overflow"):
+    with np.errstate(over="warn"), pytest.warns(RuntimeWarning, match="overflow"):
         power = range_power(np.full((20, 24), 1e155 + 0j))
     assert np.isinf(power).all()
     with pytest.raises(RadharError, match="should be finite; its largest value is inf"):

@@ -8,6 +8,7 @@ import few_shots
 import pytest
 from helpers.boards import CFG, CLOUDS
 from helpers.command_line import Done, radhar
+from helpers.slow import slow
 
 from radhar_cli.errors import RadharError
 from radhar_cli.learning import adaptation
@@ -97,10 +98,9 @@ def few(run: Path, data: Path, out: Path) -> Done:
 
 
 COMMANDS = (
-    *("eval", "predict", "predict -o", "adapt", "adapt --epochs", "adapt --mix"),
-    *("few shots", "init"),
-    *("init of other classes", "two data sets", "resume", "compare"),
-    *(pytest.param(name, marks=pytest.mark.slow) for name in ("eval of two runs", "export")),
+    *("eval", "predict", "predict -o", "adapt --epochs", "init", "two data sets", "compare"),
+    *slow(["adapt", "adapt --mix", "few shots", "init of other classes", "resume"]),
+    *slow(["eval of two runs", "export"]),
 )
 
 

@@ -373,6 +373,7 @@ def waveform_problems(c: AnyRequest) -> Iterator[Problem]:
         longest = support(radar.chirp_s)[1]
         interval = show_beside(shortest_interval, longest)
         right = f"should be at most the pulse interval 1/prf_hz = {interval} s"
+        assert isinstance(radar, SweptPulses | FramesRadar)
         yield _problem_of_length(radar, longest, shortest_interval, right)
     if smallest_count < 2:
         right = f"should give at least 2 {samples} {smallest_count})"

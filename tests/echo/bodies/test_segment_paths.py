@@ -5,6 +5,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 import pytest
 from helpers import reference as ref
+from helpers.slow import examples
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -114,6 +115,16 @@ def test_amplitudes_are_those_of_the_cross_section():
     assert found.amplitude[0, 0] == pytest.approx(expected)
 
 
+@pytest.mark.parametrize(
+    ("start", "end", "clear"),
+    [((5, 0, 0), (5.4, 0, 0), 5.0), ((5, 0, -0.2), (5, 0, 0.2), 4.95)],
+    ids=["end on", "broadside"],
+)
+def test_an_antenna_is_clear_of_a_limb_by_its_distance_less_a_semi_axis(start, end, clear):
+    body = stick(fixed(*start), fixed(*end))
+    assert body.clearance(AT_ORIGIN.tx, np.zeros(1))[0, 0] == pytest.approx(clear)
+
+
 def test_a_limb_flashes_when_it_is_broadside():
     """A swing from pointing at the radar to broadside: 20 log (c/r)^2 = 24 dB."""
     angle = lambda t: np.pi / 2 * t  # noqa: E731
@@ -210,7 +221,7 @@ def loose_bodies(draw) -> SegmentPaths:
 @pytest.mark.skipif(installed("numba") is None, reason="needs radhar[fast]")
 class TestCompiled:
     @given(source=loose_bodies(), count=st.integers(1, 300))
-    @settings(max_examples=60)
+    @settings(max_examples=examples(60))
     def test_paths_are_those_of_numpy(self, source, count):
         """Delays to rounding; amplitudes to 1e-8 of what is there without shadows."""
         t = np.linspace(0, 1, count)
@@ -220,7 +231,7 @@ class TestCompiled:
         assert (np.abs(found.amplitude - right.amplitude) < 1e-8 * lit).all()
 
     @given(source=loose_bodies(), count=st.integers(1, 300), seed=st.integers(0, 1000))
-    @settings(max_examples=30)
+    @settings(max_examples=examples(30))
     def test_no_instant_depends_on_others(self, source, count, seed):
         """So that what stands still does so to the last digit."""
         source, t = replace(source, compiled=True), np.linspace(0, 1, 300)

@@ -89,6 +89,10 @@ FILES: dict[str, tuple[str, Callable[[], bytes]]] = {
     "TRC": ("x.trc", lambda: trc_text(OPENPOSE, names("openpose25")).encode()),
     "C3D": ("x.c3d", lambda: c3d_bytes(COCO, names("coco17"))),
     "C3D of integers": ("x.c3d", lambda: c3d_bytes(COCO, names("coco17"), integers=True)),
+    "C3D in cm": (
+        "x.c3d",
+        lambda: c3d_bytes(COCO / 10, names("coco17")).replace(b"\x01\x02mm", b"\x01\x02cm"),
+    ),
     "C3D of MIPS": ("x.c3d", lambda: c3d_bytes(COCO, names("coco17"), order=">")),
     "CSV": ("x.csv", lambda: csv_text(COCO, names("coco17")).encode()),
     "CSV as nose.X;": ("x.csv", lambda: csv_text(COCO, names("coco17"), "{}.{}", ";").encode()),

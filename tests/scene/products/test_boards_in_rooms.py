@@ -5,6 +5,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from helpers.slow import slow
 
 from radhar_cli.config.data_set import Config
 from radhar_cli.echo.board_cube import combine_transmitters, exact_cube, fast_cube, mean_power
@@ -57,6 +58,8 @@ CASES = [
     ("segments", "BPM", FLOOR | SECOND),
     ("segments", "TDM", WALL),
 ]
+FAST = [CASES[number] for number in (4, 5, 8, 10)]  # each body, each board, each surrounding
+SLOW = slow(one for one in CASES if one not in FAST)
 
 
 def scene_of(body: str, board: str, more: dict[str, Any]) -> Scene:
@@ -72,7 +75,9 @@ def scene_of(body: str, board: str, more: dict[str, Any]) -> Scene:
     return nominal_scene(Config.model_validate(document | more), activity_named("walking"))
 
 
-@pytest.mark.parametrize(("body", "board", "more"), CASES)
+@pytest.mark.parametrize(
+    ("body", "board", "more"), FAST + slow(one for one in CASES if one not in FAST)
+)
 def test_the_stated_error_is_a_bound_over_all_channels(
     body: str, board: str, more: dict[str, Any]
 ) -> None:

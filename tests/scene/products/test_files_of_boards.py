@@ -8,6 +8,7 @@ import h5py
 import numpy as np
 import pytest
 from helpers.command_line import ok, radhar
+from helpers.slow import slow_but
 
 from radhar_cli.config import load_config
 from radhar_cli.config.data_set import Config
@@ -63,7 +64,7 @@ def config_of(
     return load_config(folder / "config.yaml")
 
 
-@pytest.mark.parametrize("name", WORKS)
+@pytest.mark.parametrize("name", slow_but(WORKS, ("iwr1642_pc", "advframe")))
 def test_a_file_gives_the_cube_and_the_maps_of_its_board(name: str, tmp_path: Path) -> None:
     outcome = WORKS[name]
     seconds = max(0.11, 2 * outcome.period_s)

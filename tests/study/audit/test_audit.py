@@ -4,12 +4,12 @@ import json
 
 import numpy as np
 import pytest
-from audit.trees import body, clean, save, tree
 from helpers.command_line import ok, radhar
 from helpers.listener import Listener
 from helpers.slow import slow
 from helpers.small import SMALL, small_config
 from PIL import Image
+from study.audit.trees import body, clean, save, tree
 
 from radhar_cli.dataset.audited import read_audit
 from radhar_cli.dataset.reading import open_dataset

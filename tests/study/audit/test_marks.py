@@ -4,8 +4,8 @@ import re
 
 import numpy as np
 import pytest
-from audit.trees import body, tree
 from helpers.listener import Listener
+from study.audit.trees import body, tree
 
 from radhar_cli.study.audit.audit import audit
 from radhar_cli.study.audit.held_out import Effort, class_share

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from audit.trees import body
+from study.audit.trees import body
 
 from radhar_cli.config import Config
 from radhar_cli.config.image import ImageConfig

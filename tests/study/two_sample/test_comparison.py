@@ -7,7 +7,7 @@ from helpers.listener import Listener
 from PIL import Image
 
 from radhar_cli.errors import FolderError
-from radhar_cli.study.two_sample.comparison import compare
+from radhar_cli.study.two_sample.comparison import COARSE, _features, compare
 from radhar_cli.study.two_sample.sides import open_sides
 
 SIZE = 64
@@ -66,6 +66,17 @@ def test_the_largest_differences_come_first(tmp_path):
     assert found.differences["active"].distance < 0.6
     assert found.tested is not None
     assert found.tested[0] > 0.95 * 80
+
+
+def test_the_classifier_sees_rows_as_rows(tmp_path):
+    """An image of stripes along time stays one in 32 rows and 16 columns."""
+    stripes = np.repeat(np.arange(SIZE, dtype=np.uint8)[:, None] * 4, SIZE, axis=1)
+    root = tree(tmp_path / "stripes", 0, lambda rng: stripes, "a")
+    pair = open_sides(root, root, None, {})
+    pixels = _features(pair.sides[0], 0, pair)[-32 * 16 :].reshape(32, 16)
+    assert COARSE == (32, 16)
+    assert np.ptp(pixels, axis=1).max() == 0
+    assert (np.diff(pixels[:, 0]) > 0).all()
 
 
 def test_classes_are_matched_and_the_others_named(tmp_path):

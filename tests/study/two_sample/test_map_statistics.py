@@ -129,6 +129,15 @@ def test_a_brighter_limb_and_a_torso_that_ripples():
     assert found["torso_ripple"] == pytest.approx(40)
 
 
+def test_a_limb_is_as_bright_as_in_its_brighter_columns():
+    """The 75th percentile over time: limbs that swing are bright in less than half of it."""
+    walk = walker(15)
+    swinging = walk.power.copy()
+    swinging[(DOPPLER > 190) & (DOPPLER < 430), : 2 * COLUMNS // 5] *= 10
+    found = power_statistics(DopplerMap(swinging, DOPPLER), ZERO, 430, 20)
+    assert found["limb_below_torso"] == pytest.approx(5, abs=0.3)
+
+
 def test_a_receding_walker_has_the_same_limbs():
     one = walker(15)
     away = power_statistics(DopplerMap(one.power[::-1], DOPPLER), ZERO, 430, 20)

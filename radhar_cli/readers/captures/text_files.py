@@ -1,9 +1,4 @@
-"""Captures that are text: columns of numbers, named or not, and the layout of the Glasgow set.
-
-The Glasgow set (University of Glasgow, doi 10.5525/gla.researchdata.848) begins with four numbers:
-carrier (Hz), sweep time (ms), samples of a sweep, bandwidth (Hz); complex samples follow, sweep
-after sweep.
-"""
+"""Captures that are text: columns of numbers, named or not."""
 
 import io
 import re
@@ -22,6 +17,7 @@ from radhar_cli.files.clocks import READ_CLOCKS, replace_clocks
 from radhar_cli.files.untrusted import regular_size
 from radhar_cli.numerics.arrays import Complex, Float
 from radhar_cli.readers.captures.array_axes import as_source, settings_with_frames
+from radhar_cli.readers.captures.glasgow_files import is_of_glasgow, open_glasgow
 from radhar_cli.readers.captures.named_parts import (
     POLAR,
     find_pair,
@@ -40,7 +36,6 @@ MAX_COLUMNS = 2**16
 MAX_PREAMBLE = 200  # lines before the numbers
 FEWEST_COLUMNS = 8  # of a matrix, a pulse a line, whose columns have no names
 SUFFIXES = (".csv", ".txt", ".tsv", ".dat", ".asc")
-HEADER_OF_GLASGOW = 4  # numbers
 EPOCH_S = 1e9  # seconds from 1970 to 2001, before which nobody has recorded
 _SPLIT = re.compile(r"[,;\t ]+")
 _IMAGINARY = re.compile(r"[ij]\s*\)?\s*$", re.IGNORECASE)
@@ -112,11 +107,11 @@ def _open_text(capture: CaptureFiles) -> Source:
         raise CaptureError(f"{paths[0]}: with the others takes more than {MAX_TEXT} bytes")
     signals = list[TextSignal]()
     for path in paths:
+        if len(paths) == 1 and is_of_glasgow(path):
+            return open_glasgow(path, settings)
         lines = _lines_of(_decode(path))
         if not lines:
             raise CaptureError(f"{path}: holds no numbers")
-        if len(paths) == 1 and _is_of_glasgow(lines):
-            return _open_glasgow(path, lines, capture)
         signals.append(_signal_of(path, lines, settings))
     first = signals[0]
     if settings.axes is None and first.axes is not None:
@@ -397,37 +392,6 @@ def _of_polar(
     unit = unit or "rad"
     radians = np.radians(angles) if unit == "deg" else angles
     return columns[amplitude] * np.exp(1j * radians), unit
-
-
-def _is_of_glasgow(lines: Sequence[str]) -> bool:
-    """Whether four real numbers are followed by complex ones, a number a line."""
-    start = [line.strip() for line in lines[: HEADER_OF_GLASGOW + 2]]
-    if len(start) < HEADER_OF_GLASGOW + 2 or not all(map(_is_number, start)):
-        return False
-    are_complex = [bool(_IMAGINARY.search(word)) for word in start]
-    return are_complex == [False] * HEADER_OF_GLASGOW + [True] * 2
-
-
-def _open_glasgow(path: Path, lines: Sequence[str], capture: CaptureFiles) -> Source:
-    """Open a file of the Glasgow set, which says carrier, sweep, samples and bandwidth itself."""
-    carrier, sweep_ms, count, bandwidth = (float(line) for line in lines[:HEADER_OF_GLASGOW])
-    values = _table(path, lines[HEADER_OF_GLASGOW:], HEADER_OF_GLASGOW)[:, 0]
-    samples = int(count) if 2 <= count <= len(values) and sweep_ms > 0 else 0
-    if not samples:
-        raise CaptureError(
-            f"{path}: has {len(values)} samples; line 3 says {count:g} a sweep of {sweep_ms:g} ms"
-        )
-    sweeps: Complex = values[: len(values) // samples * samples].reshape(-1, samples)
-    settings = capture.settings.model_copy(update={"axes": ("pulse", "sample")})
-    array = StoredArray(str(path), partial(np.asarray, sweeps))
-    prf = 1e3 / sweep_ms
-    header = {
-        "carrier_hz": carrier,
-        "bandwidth_hz": bandwidth,
-        "prf_hz": prf,
-        "adc_rate_hz": samples * prf,
-    }
-    return replace(as_source(path, array, settings), settings=header)
 
 
 TEXT = CaptureFormat("text (.csv, .tsv, .txt, .dat)", _is_text, _open_text, is_split=True)

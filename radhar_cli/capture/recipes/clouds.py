@@ -1,4 +1,4 @@
-"""Recordings of points out of the tables that published sets are: rows of points, frame by frame."""
+"""Recordings of points out of what published sets hold: rows of points, frame by frame."""
 
 import io
 from collections.abc import Iterable, Iterator, Sequence

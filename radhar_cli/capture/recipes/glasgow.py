@@ -1,7 +1,8 @@
 """The Glasgow set: six activities of people in front of an FMCW radar at 5.8 GHz.
 
-Files are named `KPppAaaRrr.dat`: activity K, person, activity once more, repetition; case and zeros
-vary. Persons have numbers that campaigns share, so that one person is never in two parts of a split.
+Files are named `KPppAaaRrr.dat`: activity K, person, activity once more, repetition; case and
+zeros vary. The same number in two campaigns counts as one person, who is then in one part of a
+split, whoever it was.
 """
 
 from collections.abc import Iterator
@@ -9,7 +10,14 @@ from functools import partial
 from pathlib import Path
 
 from radhar_cli.capture.importing import import_capture
-from radhar_cli.capture.recipes.recipe import BY_PERSON, NoSettings, Recipe, Take, as_name, find_files
+from radhar_cli.capture.recipes.recipe import (
+    BY_PERSON,
+    NoSettings,
+    Recipe,
+    Take,
+    as_name,
+    find_files,
+)
 from radhar_cli.errors import CaptureError
 from radhar_cli.readers.captures.settings import CaptureSettings
 

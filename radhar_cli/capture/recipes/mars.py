@@ -1,8 +1,8 @@
 """MARS: ten movements in front of an IWR1443, with the joints that a Kinect saw frame by frame.
 
-Rows of `kinect_data_*.csv` belong to the frames of `radar_data_*.csv` in the order of appearance: all
-x, all y, all z of 25 joints, right, ahead and up of the Kinect, which stood 0.2 m beside the radar.
-Numbers of frames make large steps, or begin again, from one movement to the next.
+Rows of `kinect_data_*.csv` belong to the frames of `radar_data_*.csv` in the order of appearance:
+all x, all y, all z of 25 joints, right, ahead and up of the Kinect, which stood some 0.2 m beside the
+radar. Numbers of frames make large steps, or begin again, from one movement to the next.
 """
 
 from collections.abc import Iterator
@@ -82,9 +82,7 @@ def write_take(sources: tuple[Path, ...], person: str, out: Path) -> None:
         received = (number[places] - number[places[0]]).astype(np.intp)
         points, frame = points_of_ti(rows[is_within, 2:7]), order[is_within] - places[0]
         length = int(received[-1]) + 1
-        clips.append(
-            Clip(label, person, points, received[frame], length, received, joints[places])
-        )
+        clips.append(Clip(label, person, points, received[frame], length, received, joints[places]))
     write_clips(out, clips, FRAME_S, sources, findings)
 
 
@@ -100,7 +98,7 @@ RECIPE = Recipe(
     licence="mit",
     holds="40,083 frames, 10 movements with joints, 4 persons",
     tested="files of subject 1, and files written by this layout",
-    layout="synced_data/wooutlier/subject1/timesplit/radar_data_train.csv and kinect_data_train.csv",
+    layout="subject1/timesplit/radar_data_train.csv and kinect_data_train.csv",
     list_takes=list_takes,
     config=CLOUDS,
     count=12,

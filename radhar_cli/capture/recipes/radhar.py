@@ -1,7 +1,8 @@
 """RadHAR: five activities in front of an IWR1443, messages of a ROS driver as text.
 
 A message is a point, in ROS's axes (ahead, left, up); a frame begins where `point_id` begins again.
-Frames come in pairs every 67 ms, 30 a second. Velocities recede, as TI's do. Nobody says who it is.
+Frames often come in pairs, 30 a second on average. Velocities are receding, as TI's. Nobody says who
+it is.
 """
 
 import re
@@ -20,7 +21,11 @@ FRAME_S = 1 / 30
 KEYS = ("point_id", "x", "y", "z", "range", "velocity", "doppler_bin", "bearing", "intensity")
 _NUMBER = rb"\s+([-+\d.eE]+)\s+"
 _MESSAGE = re.compile(
-    rb"\bsecs:" + _NUMBER + rb"nsecs:" + _NUMBER + rb"frame_id:[^\n]*\s+"
+    rb"\bsecs:"
+    + _NUMBER
+    + rb"nsecs:"
+    + _NUMBER
+    + rb"frame_id:[^\n]*\s+"
     + b"".join(key.encode() + b":" + _NUMBER for key in KEYS[:-1])
     + rb"intensity:\s+([-+\d.eE]+)[ \r]*\n"
 )
@@ -49,7 +54,9 @@ def write_take(path: Path, label: str, out: Path) -> None:
     findings = [f"{damaged} messages are cut and left out"] * bool(damaged)
     points = points_of(rows[:, 3:6], rows[:, 7], snr_db=rows[:, 10])
     frame = _number_frames(rows)
-    write_clips(out, [Clip(label, None, points, frame, int(frame[-1]) + 1)], FRAME_S, [path], findings)
+    write_clips(
+        out, [Clip(label, None, points, frame, int(frame[-1]) + 1)], FRAME_S, [path], findings
+    )
 
 
 def _number_frames(rows: Float) -> Index:

@@ -88,8 +88,8 @@ def _class_name(value: Any, names: list[str] | None, column: str) -> str:
         value = names[value]
     if not str(value)[:1].isalpha():
         raise ValueError(
-            f"{column} = {value!r}: should be the name of a class, or a number whose name is in the "
-            "file's metadata, as Hugging Face's ClassLabel has it"
+            f"{column} = {value!r}: should be the name of a class, or a number whose name is in "
+            "the file's metadata, as Hugging Face's ClassLabel has it"
         )
     return str(value)
 

@@ -93,7 +93,7 @@ def write_clips(
         if not are_measurements(clip.points):
             raise CaptureError(f"{names}: holds numbers that are no m, m/s or dB")
         stop = first + clip.length
-        times = {"start_s": first * frame_s, "stop_s": stop * frame_s}
+        times = {"start_s": round(first * frame_s, 9), "stop_s": round(stop * frame_s, 9)}
         labels.append(Label(label=clip.label, person=clip.person, **times))
         first = stop
 

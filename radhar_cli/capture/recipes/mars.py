@@ -1,8 +1,8 @@
 """MARS: ten movements in front of an IWR1443, with the joints that a Kinect saw frame by frame.
 
 Rows of `kinect_data_*.csv` belong to the frames of `radar_data_*.csv` in the order of appearance:
-all x, all y, all z of 25 joints, right, ahead and up of the Kinect, which stood some 0.2 m beside the
-radar. Numbers of frames make large steps, or begin again, from one movement to the next.
+all x, all y, all z of 25 joints, right, ahead and up of the Kinect, which stood some 0.2 m beside
+the radar. Numbers of frames make large steps, or begin again, from one movement to the next.
 """
 
 from collections.abc import Iterator

@@ -1,8 +1,8 @@
 """mHomeGes: ten gestures in front of an IWR1443, at distances from 1.2 m, as tables of points.
 
 Hands rest for a second between repetitions, in which there are no points. Each repetition begins a
-slot of SLOT_S in the recording, and the rest before it is left out. Axes are TI's (right, ahead, up);
-the sign of the velocity is not stated, and taken for TI's, receding.
+slot of SLOT_S in the recording, and the rest before it is left out. Axes are TI's (right, ahead,
+up); the sign of the velocity is not stated, and taken for TI's, receding.
 """
 
 from collections.abc import Iterator, Sequence

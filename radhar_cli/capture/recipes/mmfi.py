@@ -1,8 +1,8 @@
 """MM-Fi: 27 actions of 40 persons in four rooms, a file a frame of an IWR6843.
 
 Files hold float64 rows of x, y, z, Doppler, intensity. Which way the axes point is documented
-nowhere (issues 26 and 28 there), and is asked for. `ground_truth.npy` is in axes of the camera, whose
-place beside the radar is not known: joints are left out.
+nowhere (issues 26 and 28 there), and is asked for. `ground_truth.npy` is in axes of the camera,
+whose place beside the radar is not known: joints are left out.
 """
 
 from collections.abc import Iterator

@@ -131,14 +131,15 @@ def _list_tree(path: Path) -> ImageListing:
     if not files:
         raise CaptureError(f"{path}: should hold a folder of images for each class")
     total = hashlib.sha256()
-    parts = []
+    parts = list[dict[str, Any]]()
     for file in files:
         refuse_outside(file, path)
         with file.open("rb") as data:
             total.update(hashlib.file_digest(data, "sha256").digest())
-        part = {"file": file.relative_to(path).as_posix(), "label": file.parent.name}
-        split = {} if files is not inner else {"split": SPLIT_WORDS[file.parts[-3].lower()]}
-        parts.append(part | {"person": None} | split)
+        name, label = file.relative_to(path).as_posix(), file.parent.name
+        parts.append({"file": name, "label": label, "person": None})
+        if files is inner:
+            parts[-1]["split"] = SPLIT_WORDS[file.parts[-3].lower()]
     return ImageListing(parts, {path.name: total.hexdigest()}, image_size(files[0]))
 
 
@@ -315,9 +316,9 @@ def _name_arrays(shapes: Mapping[str, tuple[tuple[int, ...], str]]) -> _ArrayNam
     spelt = {name.lower(): name for name in shapes}
     parts = [f"{of}_{part}" for part in ("train", "test") for of in "xy"]
     if spelt.keys() >= {*parts}:
-        images, label, *tested = (spelt[name] for name in parts)
-        classes = spelt.get(_name_of(spelt, CLASSES) or "")
-        return _ArrayNames(images, label, None, classes, (*tested,))
+        of_images, of_label, *tested = (spelt[name] for name in parts)
+        names_of_classes = spelt.get(_name_of(spelt, CLASSES) or "")
+        return _ArrayNames(of_images, of_label, None, names_of_classes, (*tested,))
     names = {
         kind: _name_of(spelt, [*known, *(f"{name}_train" for name in known)])
         for kind, known in (("images", IMAGES), ("label", LABELS), ("person", PERSONS))

@@ -66,8 +66,8 @@ def _number_frames(rows: Float) -> Index:
     by_clock = np.round(times / FRAME_S).astype(np.int64)
     # Of each pair the second comes at once: it is the next frame, whatever its clock says.
     place = np.arange(len(by_clock))
-    numbers = place + np.maximum.accumulate(by_clock - place)
-    return numbers[np.cumsum(begins) - 1].astype(np.intp)
+    numbers: Index = (place + np.maximum.accumulate(by_clock - place)).astype(np.intp)
+    return numbers[np.cumsum(begins) - 1]
 
 
 RECIPE = Recipe(

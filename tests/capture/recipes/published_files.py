@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 
 HEAD = "Frame #,# Obj,X,Y,Z,Doppler,Intensity"
-SWEEPS, SAMPLES = 2000, 32
+SWEEPS, SAMPLES = 2000, 64
 
 
 def glasgow_text(sweeps: int = SWEEPS) -> str:
@@ -57,9 +57,9 @@ def write_mars(folder: Path) -> None:
 
 
 def radhar_message(point: int, time: float, velocity: float) -> str:
-    secs = int(time)
+    secs, nsecs = int(time), round(time % 1 * 1e9)
     return (
-        f"header: \n  seq: 1\n  stamp: \n    secs: {secs}\n    nsecs: {round((time - secs) * 1e9):>9}\n"
+        f"header: \n  seq: 1\n  stamp: \n    secs: {secs}\n    nsecs: {nsecs:>9}\n"
         f'  frame_id: "ti_mmwave"\npoint_id: {point}\nx: 2.0\ny: 0.5\nz: -0.25\nrange: 2.1\n'
         f"velocity: {velocity}\ndoppler_bin: 8\nbearing: -3.0\nintensity: 30.5\n"
     )

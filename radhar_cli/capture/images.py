@@ -20,9 +20,9 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from radhar_cli.capture.parquet_images import read_parquet_images
 from radhar_cli.config.yaml_reader import parse_yaml
 from radhar_cli.dataset.image_file import SUFFIXES, image_size, luminance, read_gray
+from radhar_cli.dataset.parquet_images import read_parquet_images
 from radhar_cli.errors import CaptureError
 from radhar_cli.files.untrusted import refuse_outside, regular_size, text_of
 from radhar_cli.motion.activities.vocabulary import plain_word

@@ -14,7 +14,7 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from radhar_cli.capture.point_recording import PointRecording, is_point_recording
-from radhar_cli.capture.recipes.recipe import Recipe, Take
+from radhar_cli.capture.recipes.recipe import SetRecipe, Take
 from radhar_cli.capture.recipes.registry import find_recipe
 from radhar_cli.capture.recording import Label, Recording
 from radhar_cli.capture.windows import COLUMNS, MAX_MANIFEST, with_recordings
@@ -48,7 +48,7 @@ class Preparation:
     """
 
     name: str
-    recipe: Recipe
+    recipe: SetRecipe
     folder: Path
     settings: Section
     config: Config
@@ -88,11 +88,11 @@ def read_preparation(name: str, folder: Path, overrides: Sequence[str]) -> Prepa
     recipe = find_recipe(name)
     if not folder.exists():
         raise FolderError(f"{folder}: no such folder; should be the download of {name}")
-    own, others = list[str](), list[str]()
+    asked, others = list[str](), list[str]()
     for override in overrides:
         key = override.partition("=")[0].partition(".")[0].strip()
-        (own if key in recipe.settings.model_fields else others).append(override)
-    settings = validated(recipe.settings, with_overrides({}, own), "--set", {})
+        (asked if key in recipe.settings.model_fields else others).append(override)
+    settings = validated(recipe.settings, with_overrides({}, asked), "--set", {})
     document = json.loads(json.dumps(dict(recipe.config)))  # a copy that may be changed
     document.setdefault("output", {}).setdefault("license", recipe.licence or None)
     document.setdefault("recordings", {})["source"] = recipe.source
@@ -133,12 +133,12 @@ def prepare_recordings(
             if failure is not None:
                 failures[name] = failure
             progress.advance(1)
-        kept = [take for take in takes if take.name not in failures]
+        readable = [take for take in takes if take.name not in failures]
         left_out = tuple(failures[name] for name in sorted(failures))
-        if not kept:
+        if not readable:
             raise CaptureError(f"{preparation.folder}: nothing of it can be read: {left_out[0]}")
-        splits, notes = _splits(kept, preparation.has_own_split)
-        rows = _manifest_rows(recordings, kept, splits)
+        splits, notes = _splits(readable, preparation.has_own_split)
+        rows = _manifest_rows(recordings, readable, splits)
         write_text(recordings / MANIFEST, rows)
     count = preparation.recipe.count
     if count is not None and len(takes) != count:
@@ -215,8 +215,8 @@ def _is_current(path: Path, take: Take) -> bool:
     """Whether the recording of a take is there, and no older than its files."""
     if not path.is_file() or path.is_symlink():
         return False
-    made = path.stat().st_mtime_ns
-    return all(source.exists() and source.stat().st_mtime_ns <= made for source in take.sources)
+    age = path.stat().st_mtime_ns
+    return all(source.exists() and source.stat().st_mtime_ns <= age for source in take.sources)
 
 
 def _write_take(take: Take, path: Path) -> tuple[str, str | None]:

@@ -84,8 +84,8 @@ def prepare(
             outcome = build(config, out, processes, bars, overwrite, None, factory)
         interrupts.complete(str(out))
         if prepared.takes:
-            taken = counted(prepared.takes, "recording")
-            tell(f"{taken}, {prepared.new} new, {len(prepared.left_out)} left out")
+            recordings = counted(prepared.takes, "recording")
+            tell(f"{recordings}, {prepared.new} new, {len(prepared.left_out)} left out")
         print_outcome(config, outcome)
 
 

@@ -280,8 +280,8 @@ def _making(data: Dataset) -> str:
     if isinstance(config, MeasuredConfig):
         source = config.recordings.source
         origin = "" if source is None else f"Recordings: {source}.\n\n"
-        made = "`radhar generate --recordings`" if source is None else "`radhar prepare`"
-        return f"{origin}{made}, seed {config.seed}; {library_versions}."
+        command = "`radhar generate --recordings`" if source is None else "`radhar prepare`"
+        return f"{origin}{command}, seed {config.seed}; {library_versions}."
     return (
         f"`radhar generate config.yaml -o OUT`, seed {config.seed}, makes the same bytes again "
         f"with {library_versions}."

@@ -41,7 +41,7 @@ class AxesSettings(Section):
             raise value_error("should have one of ahead or behind, left or right, up or down")
         return value
 
-    def require(self, who: str) -> None:
+    def require(self, subject: str) -> None:
         """Require that both are given.
 
         Raises:
@@ -49,7 +49,7 @@ class AxesSettings(Section):
         """
         if self.axes is None or self.doppler is None:
             raise CaptureError(
-                f"{who} does not say which way x, y and z point, or whose Doppler is positive: "
+                f"{subject} does not say which way x, y and z point, or whose Doppler is positive: "
                 f"axes and doppler are missing ({EXAMPLE})"
             )
 
@@ -61,7 +61,7 @@ class AxesSettings(Section):
 def turned(places: Float, axes: Axes) -> Float:
     """Places [n, 3] of other axes as radhar has them: ahead, left, up."""
     out = np.empty_like(places)
-    for column, way in enumerate(axes):
-        axis, sign = WAYS[way]
+    for column, direction in enumerate(axes):
+        axis, sign = WAYS[direction]
         out[:, axis] = sign * places[:, column]
     return out

@@ -26,7 +26,7 @@ LONGEST_CLIP = 100_000  # frames
 
 
 @dataclass(frozen=True)
-class Clip:
+class CloudClip:
     """Frames of somebody who does one thing.
 
     Attributes:
@@ -66,7 +66,7 @@ def _frame_of(number: int, points: Float, joints: Float | None = None) -> PointF
 
 def write_clips(
     out: Path,
-    clips: Iterable[Clip],
+    clips: Iterable[CloudClip],
     frame_s: float,
     sources: Sequence[Path],
     findings: Sequence[str] = (),
@@ -164,10 +164,10 @@ def read_table(path: Path, columns: int) -> tuple[Float, int]:
         CaptureError: a line does not have as many numbers.
     """
     text = read_bounded(path)
-    whole, _, cut = text.rpartition(b"\n")
+    lines, _, cut = text.rpartition(b"\n")
     if cut.strip() and cut.count(b",") + 1 >= columns:  # a last line without an end of line
-        whole, cut = text, b""
-    _, _, body = whole.partition(b"\n")
+        lines, cut = text, b""
+    _, _, body = lines.partition(b"\n")
     if not body.strip():
         return np.empty((0, columns)), int(bool(cut.strip()))
     try:

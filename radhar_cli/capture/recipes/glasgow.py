@@ -13,7 +13,7 @@ from radhar_cli.capture.importing import import_capture
 from radhar_cli.capture.recipes.recipe import (
     BY_PERSON,
     NoSettings,
-    Recipe,
+    SetRecipe,
     Take,
     as_name,
     find_files,
@@ -44,7 +44,7 @@ def write_take(path: Path, first: int, second: int, person: str, out: Path) -> N
     import_capture([path], out, CaptureSettings(label=ACTIVITIES[first - 1], person=person))
 
 
-RECIPE = Recipe(
+RECIPE = SetRecipe(
     source="Radar signatures of human activities, University of Glasgow, "
     "doi 10.5525/gla.researchdata.848",
     licence="cc-by-4.0",

@@ -6,7 +6,7 @@ Images say no axes: `maps`, `recordings.rows` and `recordings.window_s` of the c
 from pathlib import Path
 
 from radhar_cli.capture.images import are_images
-from radhar_cli.capture.recipes.recipe import NoSettings, Recipe
+from radhar_cli.capture.recipes.recipe import NoSettings, SetRecipe
 from radhar_cli.dataset.image_file import SUFFIXES
 
 
@@ -21,7 +21,7 @@ def list_takes(folder: Path, settings: NoSettings) -> Path:
     return folder
 
 
-RECIPE = Recipe(
+RECIPE = SetRecipe(
     source="images that exist already, such as those of CI4R",
     licence="",
     holds="a folder a class, a table (file, label, person, split), .npz, Parquet of Hugging Face",

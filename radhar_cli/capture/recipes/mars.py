@@ -12,13 +12,13 @@ from pathlib import Path
 import numpy as np
 
 from radhar_cli.capture.recipes.clouds import (
-    Clip,
+    CloudClip,
     frames_in_order,
     points_of_ti,
     read_table,
     write_clips,
 )
-from radhar_cli.capture.recipes.recipe import CLOUDS, NoSettings, Recipe, Take, find_files
+from radhar_cli.capture.recipes.recipe import CLOUDS, NoSettings, SetRecipe, Take, find_files
 from radhar_cli.errors import CaptureError
 from radhar_cli.motion.skeleton import JOINTS
 from radhar_cli.numerics.arrays import Float
@@ -82,7 +82,9 @@ def write_take(sources: tuple[Path, ...], person: str, out: Path) -> None:
         received = (number[places] - number[places[0]]).astype(np.intp)
         points, frame = points_of_ti(rows[is_within, 2:7]), order[is_within] - places[0]
         length = int(received[-1]) + 1
-        clips.append(Clip(label, person, points, received[frame], length, received, joints[places]))
+        clips.append(
+            CloudClip(label, person, points, received[frame], length, received, joints[places])
+        )
     write_clips(out, clips, FRAME_S, sources, findings)
 
 
@@ -93,7 +95,7 @@ def _read_joints(path: Path) -> Float:
     return in_radhar_axes(places.reshape(-1, 3)).reshape(places.shape)
 
 
-RECIPE = Recipe(
+RECIPE = SetRecipe(
     source="MARS, github.com/SizheAn/MARS",
     licence="mit",
     holds="40,083 frames, 10 movements with joints, 4 persons",

@@ -12,13 +12,13 @@ from pathlib import Path
 
 import numpy as np
 
-from radhar_cli.capture.recipes.clouds import Clip, points_of_ti, read_table, write_clips
+from radhar_cli.capture.recipes.clouds import CloudClip, points_of_ti, read_table, write_clips
 from radhar_cli.capture.recipes.recipe import (
     BY_PERSON,
     CLOUDS,
     Found,
     NoSettings,
-    Recipe,
+    SetRecipe,
     Take,
     as_name,
     find_files,
@@ -49,7 +49,7 @@ def write_take(sources: dict[Path, str], person: str, out: Path) -> None:
     Raises:
         CaptureError: a file is damaged, or all are empty.
     """
-    clips, findings = list[Clip](), list[str]()
+    clips, findings = list[CloudClip](), list[str]()
     for path, gesture in sources.items():
         rows, lost_lines = read_table(path, 7)
         findings += [f"{path.name}: the last line is cut and left out"] * lost_lines
@@ -67,14 +67,14 @@ def write_take(sources: dict[Path, str], person: str, out: Path) -> None:
     write_clips(out, _joined(clips), FRAME_S, [*sources], findings)
 
 
-def _repetition(gesture: str, person: str, rows: np.ndarray, frame: np.ndarray) -> Clip:
-    """Clip of a repetition, as long as whole slots."""
+def _repetition(gesture: str, person: str, rows: np.ndarray, frame: np.ndarray) -> CloudClip:
+    """CloudClip of a repetition, as long as whole slots."""
     slot = round(SLOT_S / FRAME_S)
     length = -(-int(frame[-1] - frame[0] + 1) // slot) * slot
-    return Clip(gesture, person, points_of_ti(rows[:, 2:7]), frame - frame[0], length)
+    return CloudClip(gesture, person, points_of_ti(rows[:, 2:7]), frame - frame[0], length)
 
 
-def _joined(clips: Sequence[Clip]) -> list[Clip]:
+def _joined(clips: Sequence[CloudClip]) -> list[CloudClip]:
     """Join repetitions of a gesture into one clip."""
     joined = []
     for _, group in groupby(clips, key=lambda clip: clip.label):
@@ -82,11 +82,11 @@ def _joined(clips: Sequence[Clip]) -> list[Clip]:
         starts = np.cumsum([0, *(clip.length for clip in parts)])
         frame = np.concatenate([c.frame + start for c, start in zip(parts, starts, strict=False)])
         points = np.concatenate([clip.points for clip in parts])
-        joined.append(Clip(parts[0].label, parts[0].person, points, frame, int(starts[-1])))
+        joined.append(CloudClip(parts[0].label, parts[0].person, points, frame, int(starts[-1])))
     return joined
 
 
-RECIPE = Recipe(
+RECIPE = SetRecipe(
     source="mHomeGes, github.com/GestureMan/mHomeGes-dataset",
     licence="mit",
     holds="10 gestures at 13 distances, persons by number",

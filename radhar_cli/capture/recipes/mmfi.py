@@ -13,8 +13,8 @@ from pathlib import Path
 import numpy as np
 
 from radhar_cli.capture.recipes.axes import AxesSettings, turned
-from radhar_cli.capture.recipes.clouds import Clip, points_of, read_bounded, write_clips
-from radhar_cli.capture.recipes.recipe import BY_PERSON, CLOUDS, Found, Recipe, Take, find_files
+from radhar_cli.capture.recipes.clouds import CloudClip, points_of, read_bounded, write_clips
+from radhar_cli.capture.recipes.recipe import BY_PERSON, CLOUDS, Found, SetRecipe, Take, find_files
 from radhar_cli.errors import CaptureError
 from radhar_cli.numerics.arrays import Float
 
@@ -72,7 +72,7 @@ def write_take(
     missing = FRAMES - len(numbers)
     findings = [f"{missing} of {FRAMES} frames have no file"] * (missing > 0)
     length = max(int(received[-1]) + 1, FRAMES if missing > 0 and numbers[0] <= 1 else 0)
-    clip = Clip(ACTIONS[action - 1], person, points, frame, length, received)
+    clip = CloudClip(ACTIONS[action - 1], person, points, frame, length, received)
     write_clips(out, [clip], FRAME_S, [sources[numbers[0]].parent], findings)
 
 
@@ -84,7 +84,7 @@ def _read_frame(path: Path) -> Float:
     return np.frombuffer(data, "<f8").reshape(-1, ROW)
 
 
-RECIPE = Recipe(
+RECIPE = SetRecipe(
     source="MM-Fi, doi 10.5281/zenodo.7983467",
     licence="cc-by-nc-4.0",
     holds="1,080 sequences of 297 frames, 27 actions, 40 persons; not for commercial use",

@@ -23,8 +23,8 @@ from radhar_cli.capture.importing_points import (
     is_point_capture,
 )
 from radhar_cli.capture.recipes.axes import AxesSettings, turned
-from radhar_cli.capture.recipes.clouds import Clip, points_of, read_bounded, write_clips
-from radhar_cli.capture.recipes.recipe import CLOUDS, Recipe, Take, as_name, find_files
+from radhar_cli.capture.recipes.clouds import CloudClip, points_of, read_bounded, write_clips
+from radhar_cli.capture.recipes.recipe import CLOUDS, SetRecipe, Take, as_name, find_files
 from radhar_cli.errors import CaptureError
 from radhar_cli.files.plain_text import decode_text
 from radhar_cli.motion.activities.vocabulary import plain_word
@@ -116,10 +116,10 @@ def write_take(path: Path, label: str | None, settings: PointTableSettings, out:
     """
     cells = _read_columns(path, settings.columns)
     frame = _numbers(path, "frame", cells["frame"])
-    whole = np.round(frame)
-    if not len(frame) or not np.isfinite(frame).all() or (whole != frame).any():
+    rounded = np.round(frame)
+    if not len(frame) or not np.isfinite(frame).all() or (rounded != frame).any():
         raise CaptureError(f"{path}: frame should be whole numbers")
-    numbers = whole.astype(np.int64)
+    numbers = rounded.astype(np.int64)
     places = np.column_stack([_numbers(path, name, cells[name]) for name in "xyz"])
     receding = settings.receding(_numbers(path, "doppler", cells["doppler"]))
     more = {
@@ -142,11 +142,11 @@ def write_take(path: Path, label: str | None, settings: PointTableSettings, out:
     for rows in np.split(np.arange(len(numbers)), np.flatnonzero(is_cut) + 1):
         first, order = int(rows[0]), (numbers[rows] - numbers[rows[0]]).astype(np.intp)
         person = persons[first] or None
-        clips.append(Clip(labels[first], person, points[rows], order, int(order[-1]) + 1))
+        clips.append(CloudClip(labels[first], person, points[rows], order, int(order[-1]) + 1))
     write_clips(out, clips, settings.frame_s, [path])
 
 
-def _read_columns(path: Path, given: Mapping[str, str]) -> dict[str, list[str]]:
+def _read_columns(path: Path, renamed: Mapping[str, str]) -> dict[str, list[str]]:
     """Cells of a table by our names.
 
     Raises:
@@ -161,7 +161,7 @@ def _read_columns(path: Path, given: Mapping[str, str]) -> dict[str, list[str]]:
     rows = csv.reader(io.StringIO(text, newline=""), delimiter=separator)
     try:
         names = [name.strip() for name in next(rows, [])]
-        columns = _match_names(path, names, given)
+        columns = _match_names(path, names, renamed)
         body = [row for row in rows if row]
     except csv.Error as error:
         raise CaptureError(f"{path}: is not CSV ({error})") from None
@@ -172,26 +172,29 @@ def _read_columns(path: Path, given: Mapping[str, str]) -> dict[str, list[str]]:
             raise CaptureError(
                 f"{path}: row {number}: has {len(row)} cells; should have {len(names)}"
             )
-    return {ours: [row[place].strip() for row in body] for ours, place in columns.items()}
+    return {name: [row[place].strip() for row in body] for name, place in columns.items()}
 
 
-def _match_names(path: Path, names: Sequence[str], given: Mapping[str, str]) -> dict[str, int]:
+def _match_names(path: Path, names: Sequence[str], renamed: Mapping[str, str]) -> dict[str, int]:
     """Place of each column by our names."""
     plain = {
-        plain_word(_UNIT.sub("", name)): place for place, name in reversed([*enumerate(names)])
+        plain_word(_UNIT.sub("", heading)): place
+        for place, heading in reversed([*enumerate(names)])
     }
     columns = dict[str, int]()
-    for ours, known in NAMES.items():
-        if ours in given and given[ours] not in names:
-            raise CaptureError(f"{path}: has no column {given[ours]!r}; it has {', '.join(names)}")
+    for name, known in NAMES.items():
+        if name in renamed and renamed[name] not in names:
+            raise CaptureError(
+                f"{path}: has no column {renamed[name]!r}; it has {', '.join(names)}"
+            )
         place = (
-            names.index(given[ours])
-            if ours in given
-            else next((plain[name] for name in known if name in plain), None)
+            names.index(renamed[name])
+            if name in renamed
+            else next((plain[word] for word in known if word in plain), None)
         )
         if place is not None:
-            columns[ours] = place
-    if missing := [ours for ours in NEEDED if ours not in columns]:
+            columns[name] = place
+    if missing := [name for name in NEEDED if name not in columns]:
         raise CaptureError(
             f"{path}: has the columns {', '.join(names)}, none of which is plainly "
             f"{', '.join(missing)}: --set columns.{missing[0]}=NAME"
@@ -207,7 +210,7 @@ def _numbers(path: Path, name: str, cells: Sequence[str]) -> Float:
         raise CaptureError(f"{path}: {name}: {error}") from None
 
 
-RECIPE = Recipe(
+RECIPE = SetRecipe(
     source="tables of points, or what radhar import reads of points",
     licence="",
     holds="a row a point: frame, x, y, z, Doppler, and intensity, SNR, label, person",

@@ -12,8 +12,15 @@ from pathlib import Path
 
 import numpy as np
 
-from radhar_cli.capture.recipes.clouds import Clip, points_of, read_bounded, write_clips
-from radhar_cli.capture.recipes.recipe import CLOUDS, NoSettings, Recipe, Take, as_name, find_files
+from radhar_cli.capture.recipes.clouds import CloudClip, points_of, read_bounded, write_clips
+from radhar_cli.capture.recipes.recipe import (
+    CLOUDS,
+    NoSettings,
+    SetRecipe,
+    Take,
+    as_name,
+    find_files,
+)
 from radhar_cli.errors import CaptureError
 from radhar_cli.numerics.arrays import Float, Index
 
@@ -55,7 +62,7 @@ def write_take(path: Path, label: str, out: Path) -> None:
     points = points_of(rows[:, 3:6], rows[:, 7], snr_db=rows[:, 10])
     frame = _number_frames(rows)
     write_clips(
-        out, [Clip(label, None, points, frame, int(frame[-1]) + 1)], FRAME_S, [path], findings
+        out, [CloudClip(label, None, points, frame, int(frame[-1]) + 1)], FRAME_S, [path], findings
     )
 
 
@@ -70,7 +77,7 @@ def _number_frames(rows: Float) -> Index:
     return numbers[np.cumsum(begins) - 1]
 
 
-RECIPE = Recipe(
+RECIPE = SetRecipe(
     source="RadHAR, github.com/nesl/RadHAR",
     licence="bsd-3-clause",
     holds="5 activities, 2 persons who are not named",

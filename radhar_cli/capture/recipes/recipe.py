@@ -36,7 +36,7 @@ class Take(NamedTuple):
 
 
 @dataclass(frozen=True)
-class Recipe:
+class SetRecipe:
     """How a published set becomes a data set.
 
     Attributes:

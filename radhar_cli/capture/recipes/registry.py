@@ -2,7 +2,7 @@
 
 from importlib import import_module
 
-from radhar_cli.capture.recipes.recipe import Recipe
+from radhar_cli.capture.recipes.recipe import SetRecipe
 from radhar_cli.errors import ConfigError, did_you_mean
 from radhar_cli.extensions import load_extensions
 
@@ -25,7 +25,7 @@ REFUSED = {
 }
 
 
-def find_recipe(name: str) -> Recipe:
+def find_recipe(name: str) -> SetRecipe:
     """Find the recipe of a name.
 
     Raises:
@@ -38,11 +38,11 @@ def find_recipe(name: str) -> Recipe:
     if plain not in RECIPES:
         hint = did_you_mean(plain, RECIPES, f"there are {', '.join(RECIPES)}")
         raise ConfigError(f"{name}: there is no such recipe; {hint}")
-    recipe: Recipe = import_module(RECIPES[plain]).RECIPE
+    recipe: SetRecipe = import_module(RECIPES[plain]).RECIPE
     return recipe
 
 
-def every_recipe() -> dict[str, Recipe]:
+def every_recipe() -> dict[str, SetRecipe]:
     """Recipes by name."""
     load_extensions()
     return {name: find_recipe(name) for name in RECIPES}

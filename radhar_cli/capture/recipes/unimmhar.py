@@ -5,7 +5,6 @@ the set of origin (D) has them. Points were drawn again to fill up frames, and z
 both are taken out. Frames were thinned out to 32, so that FRAME_S says little.
 """
 
-import zipfile
 from collections.abc import Iterator
 from functools import partial
 from itertools import groupby
@@ -14,12 +13,11 @@ from pathlib import Path
 import numpy as np
 
 from radhar_cli.capture.recipes.axes import OF_ROS, OF_TI, Axes, AxesSettings, turned
-from radhar_cli.capture.recipes.clouds import MAX_TABLE, Clip, points_of, write_clips
-from radhar_cli.capture.recipes.recipe import CLOUDS, Found, Recipe, Take, find_files
+from radhar_cli.capture.recipes.clouds import MAX_TABLE, CloudClip, points_of, write_clips
+from radhar_cli.capture.recipes.recipe import CLOUDS, Found, SetRecipe, Take, find_files
 from radhar_cli.errors import CaptureError
 from radhar_cli.numerics.arrays import Float
-from radhar_cli.readers.captures.array_files import check_npz
-from radhar_cli.readers.captures.parser_errors import parser_errors_as_capture_errors
+from radhar_cli.readers.captures.array_files import read_npz_array
 
 FRAMES, FRAME_S = 32, 0.1
 LONGEST = 1000  # frames or points of a clip
@@ -55,9 +53,9 @@ def list_takes(folder: Path, settings: AxesSettings) -> Iterator[Take]:
         if AXES_OF_SET.get(origin) is None:
             settings.require("unimmhar: of MM-Fi, the authors' description")
         sources = {file.path: int(file.match[2]) for file in clips}
-        who = f"D{origin:03d}P{person}" if person else None
-        name = "/".join(filter(None, (split, who or f"D{origin:03d}")))
-        write = partial(write_take, sources, origin, who, settings)
+        person_of_set = f"D{origin:03d}P{person}" if person else None
+        name = "/".join(filter(None, (split, person_of_set or f"D{origin:03d}")))
+        write = partial(write_take, sources, origin, person_of_set, settings)
         yield Take(name, tuple(sources), write, split or None)
 
 
@@ -100,27 +98,22 @@ def write_take(
             length += len(clip)
         frame = np.concatenate(frames).astype(np.intp)
         clips.append(
-            Clip(CLASSES[label], person, np.concatenate(points), frame, length, np.arange(length))
+            CloudClip(
+                CLASSES[label], person, np.concatenate(points), frame, length, np.arange(length)
+            )
         )
     write_clips(out, clips, FRAME_S, [*sources])
 
 
 def _read_clip(path: Path) -> Float:
     """Clip [frames, points, 5] of a file."""
-    with parser_errors_as_capture_errors(str(path)), zipfile.ZipFile(path) as archive:
-        shapes = check_npz(archive)
-        shape, kind = shapes.get(ARRAY, ((), "O"))
-        if kind == "O":
-            raise ValueError(f"holds no {ARRAY} of plain numbers; pickles are not opened")
-        if len(shape) != 3 or shape[2] != 5 or max(shape) > LONGEST or not min(shape):
-            raise ValueError(f"{ARRAY} has the shape {[*shape]}; should be [32, 64, 5]")
-        if path.stat().st_size > MAX_TABLE:
-            raise ValueError("is too large")
-        with np.load(path, allow_pickle=False) as arrays:
-            return np.asarray(arrays[ARRAY], float)
+    clip = read_npz_array(path, ARRAY, MAX_TABLE)
+    if clip.ndim != 3 or clip.shape[2] != 5 or max(clip.shape) > LONGEST or not min(clip.shape):
+        raise CaptureError(f"{path}: {ARRAY} has the shape {[*clip.shape]}; should be [32, 64, 5]")
+    return clip.astype(float)
 
 
-RECIPE = Recipe(
+RECIPE = SetRecipe(
     source="UniMM-HAR, github.com/jolin830/DAP-Net, arXiv 2605.09604",
     licence="",
     holds="33 classes of mRI, MM-Fi and RadHAR by protocols C-Sub and C-Set",

@@ -75,8 +75,8 @@ def test_files_of_glasgow_say_activity_and_person(made: Path) -> None:
         assert data.config.maps == ("rtm", "stft")
         rows_of_map = data.maps["stft"][0].astype(int).sum(axis=1)
         towards = len(rows_of_map) // 2 - rows_of_map.argmax()
-        # 1 m/s is 38.7 Hz of +-500 Hz; row 0 is the fastest approach.
-        assert towards == pytest.approx(38.7 / 1000 * len(rows_of_map), abs=4)
+        # 1 m/s is 38.7 Hz of +-500 Hz, 10 rows, on which a mask is broad; row 0 approaches fastest.
+        assert towards == pytest.approx(38.7 / 1000 * len(rows_of_map), abs=8)
 
 
 def test_a_cut_file_of_glasgow_loses_its_last_sweep(made: Path) -> None:
@@ -165,12 +165,10 @@ def test_mmfi_asks_which_way_its_axes_point(tmp_path: Path) -> None:
 
 def test_clips_of_unimmhar_lose_what_fills_them_up(made: Path) -> None:
     with open_dataset(made / "unimmhar_set") as data:
-        assert data.classes == ("jump", "walk") or set(data.classes) == {"walk", "jump"}
+        assert set(data.classes) == {"walk", "jump"}
         starts = data.products["points_start"][0]
         assert np.diff(starts).tolist() == [2] * 20 + [0] * 12
         assert set(data.split.tolist()) == {0, 2}
-    done = prepare("unimmhar", made, made / "other", *ASKED)
-    assert done.returncode in (0, 2)
 
 
 def test_two_protocols_of_unimmhar_are_not_mixed(tmp_path: Path) -> None:
@@ -322,8 +320,8 @@ from functools import partial
 
 import numpy as np
 
-from radhar_cli.capture.recipes.clouds import Clip, points_of, read_table, write_clips
-from radhar_cli.capture.recipes.recipe import CLOUDS, Recipe, Take, find_files
+from radhar_cli.capture.recipes.clouds import CloudClip, points_of, read_table, write_clips
+from radhar_cli.capture.recipes.recipe import CLOUDS, SetRecipe, Take, find_files
 from radhar_cli.capture.recipes.registry import RECIPES
 
 RECIPES["ours"] = "our_set"
@@ -337,11 +335,11 @@ def list_takes(folder, settings):
 def write(path, label, person, out):
     rows, _ = read_table(path, 5)
     points = points_of(rows[:, 1:4], rows[:, 4])
-    clip = Clip(label, person, points, rows[:, 0].astype(int), int(rows[-1, 0]) + 1)
+    clip = CloudClip(label, person, points, rows[:, 0].astype(int), int(rows[-1, 0]) + 1)
     write_clips(out, [clip], 0.1, [path])
 
 
-RECIPE = Recipe("us", "mit", "two classes", "itself", "walking_anna.csv", list_takes, CLOUDS)
+RECIPE = SetRecipe("us", "mit", "two classes", "itself", "walking_anna.csv", list_takes, CLOUDS)
 """
 
 

@@ -88,11 +88,11 @@ def read_preparation(name: str, folder: Path, overrides: Sequence[str]) -> Prepa
     recipe = find_recipe(name)
     if not folder.exists():
         raise FolderError(f"{folder}: no such folder; should be the download of {name}")
-    asked, others = list[str](), list[str]()
+    answers, others = list[str](), list[str]()
     for override in overrides:
         key = override.partition("=")[0].partition(".")[0].strip()
-        (asked if key in recipe.settings.model_fields else others).append(override)
-    settings = validated(recipe.settings, with_overrides({}, asked), "--set", {})
+        (answers if key in recipe.settings.model_fields else others).append(override)
+    settings = validated(recipe.settings, with_overrides({}, answers), "--set", {})
     document = json.loads(json.dumps(dict(recipe.config)))  # a copy that may be changed
     document.setdefault("output", {}).setdefault("license", recipe.licence or None)
     document.setdefault("recordings", {})["source"] = recipe.source

@@ -18,7 +18,7 @@ DATA_SETS = "Data sets"
 COMMANDS = {
     DATA_SETS: ("demo", "generate", "verify", "audit", "merge", "convert"),
     "Look": ("simulate", "motion", "preview", "view", "inspect"),
-    "Real radars": ("import", "process", "fit", "compare"),
+    "Real radars": ("prepare", "import", "process", "fit", "compare"),
     "Learn": ("train", "eval", "predict", "adapt", "export"),
     "Settings": ("tradeoff", "limits"),
 }

@@ -23,6 +23,7 @@ import numpy as np
 import pytest
 import yaml
 from capture.dca1000_file import Radar, body, echo, words
+from capture.recipes.published_files import write_mars
 from capture.uart_bytes import demo_packet, floats, side_info
 from helpers.boards import CFG
 from helpers.capture_files import write_all
@@ -83,6 +84,7 @@ SMALL = {
     "train": {"--set": "epochs=1 workers=0"},
     "adapt": {"--epochs": "1"},
     "verify": {"--samples": "1"},
+    "prepare": {"--jobs": "1"},
     "simulate": {"--set": "duration_s=3"},
     "limits": {"--minutes": "0.05"},
 }
@@ -248,6 +250,14 @@ def replay(path: Path) -> None:
     path.write_text(json.dumps({"cfg": cfg, "demo": "Out of Box Demo", "data": frames}))
 
 
+def point_table(path: Path) -> None:
+    """A point a frame of two who do different things."""
+    for place, label in ((path, "walking"), (path.parents[1] / "falling/anna.csv", "falling")):
+        place.parent.mkdir(parents=True, exist_ok=True)
+        rows = [f"{n},0.5,2,0.25,-1,{label}" for n in range(60)]
+        place.write_text("\n".join(["frame,x,y,z,doppler,label", *rows, ""]))
+
+
 FILES: dict[str, dict[str, Callable[[Path], object]]] = {
     "CONTRIBUTING.md": {
         f".venv/bin/{name}": idle for name in ("python", "ruff", "mypy", "pre-commit")
@@ -268,6 +278,7 @@ FILES: dict[str, dict[str, Callable[[Path], object]]] = {
         "names.yaml": lambda path: path.write_text("picking_up: grabbing"),
     },
     "captures.md": {"walk.wav": lambda path: write_all(path.parent)},
+    "prepare.md": {"downloads/MARS": write_mars, "captures/walking/anna.csv": point_table},
     "points.md": {
         "walk.bin": dump,
         "replay_1.json": replay,

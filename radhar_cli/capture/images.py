@@ -1,14 +1,16 @@
-"""Existing images as samples: a tree of class folders, a table of files, or an .npz.
+"""Existing images as samples: a tree of class folders, a table of files, an .npz, or Parquet.
 
 A table (CSV with commas, semicolons or tabs, or a YAML list) has a row for each image file, with
 its label and optionally who it is. An .npz has one array of images [N, H, W] (uint8 or bool; masks
 of 0 and 1 become 0 and 255), `label` [N], indices into `classes` or texts, and optionally `person`
-[N]. Columns and arrays may have any of the names in use for them.
+[N]; or x_train, y_train, x_test and y_test, as Keras has them. Files of Parquet are called after
+the part of the split. Columns and arrays may have any of the names in use for them.
 """
 
 import csv
 import hashlib
 import io
+import re
 import zipfile
 from collections.abc import Collection, Mapping, Sequence
 from functools import lru_cache
@@ -20,6 +22,7 @@ from numpy.typing import NDArray
 
 from radhar_cli.config.yaml_reader import parse_yaml
 from radhar_cli.dataset.image_file import SUFFIXES, image_size, luminance, read_gray
+from radhar_cli.dataset.parquet_images import read_parquet_images
 from radhar_cli.errors import CaptureError
 from radhar_cli.files.untrusted import refuse_outside, regular_size, text_of
 from radhar_cli.motion.activities.vocabulary import plain_word
@@ -29,6 +32,13 @@ from radhar_cli.readers.captures.parser_errors import parser_errors_as_capture_e
 
 MAX_NPZ = 2**29  # bytes of its images, which are held
 MAX_TABLE = 2**22  # bytes
+NPZ, PARQUET = ".npz", ".parquet"
+# {folder, cell, or beginning of a file's name: part of the split}
+SPLIT_WORDS = {
+    **dict.fromkeys(("train", "training"), "train"),
+    **dict.fromkeys(("val", "valid", "validation", "validate", "dev"), "validation"),
+    **dict.fromkeys(("test", "testing"), "test"),
+}
 MAX_DIGITS = 18  # of a label that is a number
 TABLES = {".csv", ".tsv", ".txt", ".yaml", ".yml"}
 # Names in use for columns of tables and arrays of an .npz; those that come first are taken.
@@ -37,22 +47,23 @@ FILES = (
     *("image", "image_path", "image_file", "image_name", "img", "img_path", "picture", "name"),
 )
 LABELS = ("label", "labels", "class", "class_name", "activity", "category", "target", "y")
+SPLITS = ("split", "subset", "partition")
 PERSONS = ("person", "persons", "subject", "subjects", "participant", "subject_id", "person_id")
 IMAGES = ("masks", "images", "x", "data")
 CLASSES = ("classes", "class_names", "target_names")
 
 
 class ImageListing(NamedTuple):
-    """Images of a tree or an .npz, with their checksum and size."""
+    """Images of a tree, a table or packed files, with their checksum and size."""
 
-    parts: list[dict[str, Any]]  # {file, label, person} of each
+    parts: list[dict[str, Any]]  # {file, label, person, and split where it is known} of each
     sha256: dict[str, str]  # {name of the tree or .npz: checksum of all of them}
     size: tuple[int, int]  # (H, W) of the first
 
 
 def are_images(path: Path) -> bool:
-    """Whether a path is a tree of images, an .npz, or a table whose rows name image files."""
-    if path.is_dir() or path.suffix.lower() == ".npz":
+    """Whether a path is a folder, packed images, or a table whose rows name image files."""
+    if path.is_dir() or path.suffix.lower() in (NPZ, PARQUET):
         return True
     if path.suffix.lower() not in TABLES or not path.is_file():
         return False
@@ -62,54 +73,73 @@ def are_images(path: Path) -> bool:
 
 
 def is_image(file: str) -> bool:
-    """Whether a part's file is an image, or one of an .npz, `masks.npz/12`."""
+    """Whether a part's file is an image, or one of packed ones, `masks.npz/12`."""
     place = PurePosixPath(file)
-    return place.suffix.lower() in SUFFIXES or place.parent.suffix.lower() == ".npz"
+    return place.suffix.lower() in SUFFIXES or place.parent.suffix.lower() in (NPZ, PARQUET)
 
 
 def list_images(path: Path, packed: bool) -> ImageListing:
-    """List the images of a tree of class folders, of a table, or of an .npz.
+    """List the images of a tree of class folders, of a table, of an .npz, or of Parquet.
 
     Args:
-        path: the tree, the table, or the .npz.
+        path: the tree, the table, the .npz, or Parquet or a folder of it.
         packed: whether each byte holds eight columns as bits.
 
     Raises:
         CaptureError: there are no images, or they are damaged.
     """
     if path.is_dir():
-        return _list_tree(path)
+        parquet = sorted(path.glob(f"*{PARQUET}")) or sorted(path.glob(f"*/*{PARQUET}"))
+        return _list_packed(path, parquet, packed) if parquet else _list_tree(path)
     if path.suffix.lower() in TABLES:
         return _list_table(path)
-    with parser_errors_as_capture_errors(str(path)):
-        regular_size(path)
-    images, label, person = _load_npz(path, packed, path.stat().st_mtime_ns)
-    with path.open("rb") as file:
-        total = hashlib.file_digest(file, "sha256").hexdigest()
-    parts = [
-        {
-            "file": f"{path.name}/{number}",
-            "label": str(label[number]),
-            "person": None if person is None else str(person[number]),
-        }
-        for number in range(len(images))
-    ]
-    return ImageListing(parts, {path.name: total}, (images.shape[1], images.shape[2]))
+    return _list_packed(path.parent, [path], packed)
+
+
+def _list_packed(folder: Path, paths: Sequence[Path], packed: bool) -> ImageListing:
+    """List the images of files that hold many each."""
+    parts, checksums, sizes = list[dict[str, Any]](), dict[str, str](), set[tuple[int, int]]()
+    for path in paths:
+        if path.parent != folder or len(paths) > 1:
+            refuse_outside(path, folder)
+        with parser_errors_as_capture_errors(str(path)):
+            regular_size(path)
+        held, name = _load_packed(path, packed), path.relative_to(folder).as_posix()
+        with path.open("rb") as file:
+            checksums[name] = hashlib.file_digest(file, "sha256").hexdigest()
+        sizes.add((held.images.shape[1], held.images.shape[2]))
+        parts += [
+            {
+                "file": f"{name}/{number}",
+                "label": str(held.label[number]),
+                "person": None if held.person is None else str(held.person[number]),
+                **({} if held.split is None else {"split": str(held.split[number])}),
+            }
+            for number in range(len(held.images))
+        ]
+    if len(sizes) > 1:
+        raise CaptureError(f"{folder}: images have several sizes; should have one")
+    return ImageListing(parts, checksums, sizes.pop())
 
 
 def _list_tree(path: Path) -> ImageListing:
-    """List the images of a tree of class folders."""
+    """List the images of a tree of class folders, or of such a tree a part of the split."""
     files = sorted(file for file in path.glob("*/*") if file.suffix.lower() in SUFFIXES)
+    inner = sorted(file for file in path.glob("*/*/*") if file.suffix.lower() in SUFFIXES)
+    if not files and all(file.parts[-3].lower() in SPLIT_WORDS for file in inner):
+        files = inner
     if not files:
         raise CaptureError(f"{path}: should hold a folder of images for each class")
     total = hashlib.sha256()
-    parts = []
+    parts = list[dict[str, Any]]()
     for file in files:
         refuse_outside(file, path)
         with file.open("rb") as data:
             total.update(hashlib.file_digest(data, "sha256").digest())
-        label = file.parent.name
-        parts.append({"file": f"{label}/{file.name}", "label": label, "person": None})
+        name, label = file.relative_to(path).as_posix(), file.parent.name
+        parts.append({"file": name, "label": label, "person": None})
+        if files is inner:
+            parts[-1]["split"] = SPLIT_WORDS[file.parts[-3].lower()]
     return ImageListing(parts, {path.name: total.hexdigest()}, image_size(files[0]))
 
 
@@ -152,8 +182,8 @@ def _image_file(folder: Path, cell: str) -> str | None:
 def _list_table(path: Path) -> ImageListing:
     """List the image files that a table names, with their labels and persons."""
     rows, total, parts = _read_rows(path), hashlib.sha256(), dict[str, dict[str, Any]]()
-    file_name, label_name, person_name = (
-        _name_of(rows[0], known) for known in (FILES, LABELS, PERSONS)
+    file_name, label_name, person_name, split_name = (
+        _name_of(rows[0], known) for known in (FILES, LABELS, PERSONS, SPLITS)
     )
     if label_name is None:
         raise CaptureError(
@@ -182,23 +212,59 @@ def _list_table(path: Path) -> ImageListing:
             total.update(hashlib.file_digest(data, "sha256").digest())
         person = str(row.get(person_name) or "").strip() if person_name else ""
         parts[file] = {"file": file, "label": label, "person": person or None}
+        if word := str(row.get(split_name) or "").strip().lower() if split_name else "":
+            parts[file]["split"] = SPLIT_WORDS.get(word, word)
     first = path.parent / next(iter(parts))
     return ImageListing([*parts.values()], {path.name: total.hexdigest()}, image_size(first))
 
 
+class PackedImages(NamedTuple):
+    """Images of a file that holds many."""
+
+    images: Levels  # [N, H, W]
+    label: NDArray[Any]  # name of the class of each [N]
+    person: NDArray[Any] | None  # who each shows [N], where it is known
+    split: NDArray[Any] | None  # part of the split of each [N], where it is known
+
+
+def _load_packed(path: Path, packed: bool) -> PackedImages:
+    """Read the images of an .npz, unpacking packed bits, or of Parquet."""
+    load = _load_parquet if path.suffix.lower() == PARQUET else _load_npz
+    return load(path, packed, path.stat().st_mtime_ns)
+
+
 @lru_cache(maxsize=2)
-def _load_npz(
-    path: Path, packed: bool, changed: int
-) -> tuple[Levels, NDArray[Any], NDArray[Any] | None]:
-    """Read (images [N, H, W], label [N], person [N] or None) of an .npz, unpacking packed bits."""
+def _load_parquet(path: Path, packed: bool, changed: int) -> PackedImages:
+    """Read the images of Parquet, whose part of the split its name begins with."""
+    del packed, changed
+    held = read_parquet_images(path, (*IMAGES, *FILES), LABELS, PERSONS)
+    split = SPLIT_WORDS.get(re.split(r"[-_.]", path.name.lower())[0])
+    return PackedImages(
+        held.levels,
+        np.array(held.labels, object),
+        None if held.persons is None else np.array(held.persons, object),
+        None if split is None else np.repeat(split, len(held.labels)),
+    )
+
+
+@lru_cache(maxsize=2)
+def _load_npz(path: Path, packed: bool, changed: int) -> PackedImages:
+    """Read the images of an .npz."""
     del changed
     with parser_errors_as_capture_errors(str(path)), zipfile.ZipFile(path) as archive:
         shapes = check_npz(archive)
-        names = _name_arrays(path, shapes)
-        if int(np.prod(shapes[names.images][0], dtype=object)) > MAX_NPZ:
+        names, split = _name_arrays(shapes), None
+        of_images = [names.images, *names.tested[:1]]
+        if sum(int(np.prod(shapes[name][0], dtype=object)) for name in of_images) > MAX_NPZ:
             raise ValueError(f"holds more than {MAX_NPZ} bytes of images")
         with np.load(path, allow_pickle=False) as arrays:
             values, label = _levels(arrays[names.images]), _as_text(arrays[names.label])
+            if names.tested:
+                more, of_more = _levels(arrays[names.tested[0]]), _as_text(arrays[names.tested[1]])
+                if more.shape[1:] != values.shape[1:] or more.dtype != values.dtype:
+                    raise ValueError(f"{' and '.join(of_images)} differ in size or type")
+                split = np.repeat(["train", "test"], [len(values), len(more)])
+                values, label = np.concatenate([values, more]), np.concatenate([label, of_more])
             classes, person = (
                 None if name is None else _as_text(arrays[name].ravel())
                 for name in (names.classes, names.person)
@@ -225,7 +291,7 @@ def _load_npz(
                 )
         if person is not None and len(person) != len(images):
             raise ValueError(f"person should name the person in each of {len(images)} images")
-    return images, label, person
+    return PackedImages(images, label, person, split)
 
 
 class _ArrayNames(NamedTuple):
@@ -235,27 +301,24 @@ class _ArrayNames(NamedTuple):
     label: str
     person: str | None
     classes: str | None
+    tested: tuple[str, ...] = ()  # images and labels of a test part
 
 
-def _name_arrays(path: Path, shapes: Mapping[str, tuple[tuple[int, ...], str]]) -> _ArrayNames:
+def _name_arrays(shapes: Mapping[str, tuple[tuple[int, ...], str]]) -> _ArrayNames:
     """Find the arrays of images, labels, persons and classes by their names.
 
     Args:
-        path: the .npz, for messages.
         shapes: {name: shape and kind of its numbers}.
 
     Raises:
-        ValueError: images or labels are not there, or in several parts.
+        ValueError: images or labels are not there.
     """
     spelt = {name.lower(): name for name in shapes}
-    if {"x_train", "x_test"} <= spelt.keys():
-        x, y = ([spelt.get(f"{of}_{part}", of) for part in ("train", "test")] for of in "xy")
-        raise ValueError(
-            f"has {', '.join(x)}: should be one array, as split of the config cuts it; `python -c "
-            f"\"import numpy as np; a = np.load('{path}'); np.savez('joined.npz', images="
-            f"np.concatenate([a['{x[0]}'], a['{x[1]}']]), label=np.concatenate([a['{y[0]}'], "
-            f"a['{y[1]}']]))\"` joins them"
-        )
+    parts = [f"{of}_{part}" for part in ("train", "test") for of in "xy"]
+    if spelt.keys() >= {*parts}:
+        of_images, of_label, *tested = (spelt[name] for name in parts)
+        names_of_classes = spelt.get(_name_of(spelt, CLASSES) or "")
+        return _ArrayNames(of_images, of_label, None, names_of_classes, (*tested,))
     names = {
         kind: _name_of(spelt, [*known, *(f"{name}_train" for name in known)])
         for kind, known in (("images", IMAGES), ("label", LABELS), ("person", PERSONS))
@@ -342,7 +405,7 @@ def read_image(folder: Path, file: str, size: tuple[int, int], packed: bool) -> 
 
     Args:
         folder: folder of the manifest.
-        file: image file, or image of an .npz (`masks.npz/12`), below the folder.
+        file: image file, or one of packed images (`masks.npz/12`), below the folder.
         size: (H, W) that it should have.
         packed: whether each byte of an .npz holds eight columns as bits.
 
@@ -351,10 +414,10 @@ def read_image(folder: Path, file: str, size: tuple[int, int], packed: bool) -> 
         FolderError: the same, of an image file.
     """
     place = PurePosixPath(file)
-    if place.parent.suffix.lower() != ".npz":
+    if place.parent.suffix.lower() not in (NPZ, PARQUET):
         return read_gray(folder / file, size)
     path = folder / place.parent
-    images = _load_npz(path, packed, path.stat().st_mtime_ns)[0]
+    images = _load_packed(path, packed).images
     number = int(place.name) if place.name.isdecimal() else len(images)
     if number >= len(images) or images.shape[1:] != size:
         raise CaptureError(f"{path}: image {place.name}: is missing, or not {size[0]} x {size[1]}")

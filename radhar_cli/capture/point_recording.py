@@ -16,6 +16,7 @@ from radhar_cli.errors import CaptureError, FolderError, UnfinishedError, descri
 from radhar_cli.files.new_hdf5 import new_hdf5
 from radhar_cli.files.replacing import replacing
 from radhar_cli.files.untrusted import Closing
+from radhar_cli.motion.skeleton import JOINTS
 from radhar_cli.numerics.arrays import Float, Index
 from radhar_cli.processing.points import COLUMNS, Cloud
 from radhar_cli.readers.points.point_frames import NO_TRACK, TARGET_COLUMNS, PointFrame
@@ -189,6 +190,7 @@ def _write_frames(
         "points_track": _new_rows(file, "points_track", "<i2"),
     }
     starts = {"points": [0], "targets": [0]}
+    joints = list[Float | None]()
     waiting: dict[str, list[NDArray[Any]]] = {name: [] for name in rows}
 
     def flush() -> None:
@@ -209,11 +211,18 @@ def _write_frames(
             waiting[name].append(np.asarray(values, rows[name].dtype))
         for name, start in starts.items():
             start.append(start[-1] + len(columns[name]))
+        joints.append(frame.joints)
         if len(waiting["points"]) >= 1024:
             flush()
     flush()
     file["points_start"] = np.array(starts["points"], "<i8")
     file["targets_start"] = np.array(starts["targets"], "<i8")
+    if any(places is not None for places in joints):
+        nowhere = np.full((len(JOINTS), 3), np.nan)
+        known = [nowhere if places is None else places for places in joints]
+        file["joints"] = np.array(known, "<f4")
+        file["joints"].attrs["names"] = JOINTS
+        file.attrs["joints"] = len(JOINTS)
     return starts["points"][-1], starts["targets"][-1]
 
 
@@ -258,6 +267,8 @@ class PointRecording(Closing):
         start: number of the first point of each frame, and of all points [frames + 1].
         number: number of each frame, as the board counts [frames].
         time: time of each frame since the first, s [frames].
+        joints: places of the thirteen joints in each frame [frames, 13, 3], m; NaN where nothing
+            saw them. None of a recording without joints.
 
     Raises:
         FolderError: the file is no recording of points, or is damaged.
@@ -273,6 +284,10 @@ class PointRecording(Closing):
             self.number: Index = self._file.column("frame_number", "i8", (frames,))[:]
             self.time: Float = self._file.column("frame_time", "f8", (frames,))[:]
             self._points = self._file.samples("points", may_be_empty=True)
+            self.joints: Float | None = None
+            if self._file.has_attribute("joints"):
+                shape = (frames, len(JOINTS), 3)
+                self.joints = self._file.column("joints", "<f4", shape)[:]
             ordered = (np.diff(self.start) >= 0).all() and (np.diff(self.time) > 0).all()
             ends = self.start[0] == 0 and self.start[-1] == total
             if not (ordered and ends and np.isfinite(self.time).all()):
@@ -318,16 +333,10 @@ class PointRecording(Closing):
         Raises:
             CaptureError: points hold infinite numbers, or the window too many frames.
         """
-        frame_s = self.info.frame_s
-        first, count = round(start / frame_s), max(round(seconds / frame_s), 1)
-        if count > MAX_FRAMES:
-            raise CaptureError(
-                f"{self.path}: {seconds:g} s are {count} frames; should be at most {MAX_FRAMES}"
-            )
-        places = np.round(self.time / frame_s).astype(np.int64)
-        low, high = np.searchsorted(places, [first, first + count]).tolist()
+        inside, places, count = self._frames_within(start, seconds)
+        low, high = inside.start, inside.stop
         counts = np.zeros(count, np.int64)
-        counts[places[low:high] - first] = np.diff(self.start[low : high + 1])
+        counts[places] = np.diff(self.start[low : high + 1])
         rows = slice(int(self.start[low]), int(self.start[high]))
         points = np.empty((0, len(COLUMNS)), np.float32)
         if rows.stop > rows.start:
@@ -336,6 +345,26 @@ class PointRecording(Closing):
         if np.isinf(points).any():
             raise CaptureError(f"{self.path}: /points: holds infinite numbers")
         return Cloud(points, np.concatenate([[0], np.cumsum(counts)]).astype(np.int64))
+
+    def joints_within(self, start: float, seconds: float) -> Float:
+        """Joints [frames, 1, 13, 3] of the frames of a `window`, m; NaN in those that are lost."""
+        inside, places, count = self._frames_within(start, seconds)
+        joints = np.full((count, 1, len(JOINTS), 3), np.nan, np.float32)
+        if self.joints is not None:
+            joints[places, 0] = self.joints[inside]
+        return joints
+
+    def _frames_within(self, start: float, seconds: float) -> tuple[slice, Index, int]:
+        """Received frames of a window, the place of each in it [n], and its number of frames."""
+        frame_s = self.info.frame_s
+        first, count = round(start / frame_s), max(round(seconds / frame_s), 1)
+        if count > MAX_FRAMES:
+            raise CaptureError(
+                f"{self.path}: {seconds:g} s are {count} frames; should be at most {MAX_FRAMES}"
+            )
+        places = np.round(self.time / frame_s).astype(np.int64)
+        low, high = np.searchsorted(places, [first, first + count]).tolist()
+        return slice(low, high), places[low:high] - first, count
 
     def close(self) -> None:
         """Close the file."""

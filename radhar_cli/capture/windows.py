@@ -3,6 +3,7 @@
 import csv
 import io
 import json
+from collections import Counter
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
@@ -53,13 +54,14 @@ from radhar_cli.schema.twelve import TWELVE
 
 MAX_MANIFEST = 2**20  # bytes
 MAX_CONFIG = 2**19  # characters of the resolved config: two of it lie beside the data set
-COLUMNS = ("file", "label", "person", "start", "stop")
+COLUMNS = ("file", "label", "person", "start", "stop", "split")
 
 
 def read_manifest(path: Path) -> list[dict[str, Any]]:
     """Read the rows of a manifest: CSV with a heading, or a YAML list of mappings.
 
-    Columns are file (below the manifest's folder), label, and optionally person, start, stop (s).
+    Columns are file (below the manifest's folder), label, and optionally person, start, stop (s)
+    and split (train, validation or test).
 
     Raises:
         ConfigError: it is neither, lists nothing, or a row cannot be used.
@@ -102,6 +104,7 @@ def _check_row(row: dict[Any, Any], where: str) -> dict[str, Any]:
         "person": None if person is None else str(person),
         "start_s": cells["start"],
         "stop_s": cells["stop"],
+        **({"split": cells["split"]} if "split" in cells else {}),
     }
 
 
@@ -146,6 +149,7 @@ def with_recordings(config: Config, manifest: Path) -> MeasuredConfig:
     document["recordings"] = {
         **section,
         "frame_s": listed.frame_s,
+        "joints": listed.joints,
         "parts": parts,
         "sha256": checksums,
     }
@@ -160,11 +164,13 @@ class Listed(NamedTuple):
         lengths: Duration of each, s, by name.
         radar_section: Makes the section `radar` of their data set, of that of a config.
         frame_s: Time from frame to frame of points, s; None of samples.
+        joints: Whether recordings of points have joints.
     """
 
     lengths: dict[str, float]
     radar_section: Callable[[dict[str, Any]], dict[str, Any]]
     frame_s: float | None = None
+    joints: bool = False
 
 
 def _list_samples(
@@ -219,11 +225,12 @@ def _list_points(manifest: Path, names: Sequence[str]) -> Listed:
     Raises:
         ConfigError: they are of different boards.
     """
-    lengths, infos, cfg = dict[str, float](), list[PointRecordingInfo](), ""
+    lengths, infos, cfg, joints = dict[str, float](), list[PointRecordingInfo](), "", False
     for name in names:
         with PointRecording(manifest.parent / name) as recording:
             lengths[name] = round(recording.duration, 9)
             infos.append(recording.info)
+            joints = joints or recording.joints is not None
         first, info = infos[0], infos[-1]
         if abs(info.frame_s - first.frame_s) > TOLERANCE * first.frame_s:
             raise ConfigError(
@@ -233,7 +240,7 @@ def _list_points(manifest: Path, names: Sequence[str]) -> Listed:
         cfg = cfg or info.cfg
         if info.cfg not in ("", cfg):
             raise ConfigError(f"{manifest}: {name}: was imported with another .cfg: one radar")
-    return Listed(lengths, partial(_section_of_points, cfg=cfg), infos[0].frame_s)
+    return Listed(lengths, partial(_section_of_points, cfg=cfg), infos[0].frame_s, joints)
 
 
 def _section_of_points(radar: dict[str, Any], cfg: str) -> dict[str, Any]:
@@ -292,15 +299,18 @@ def _with_images(config: Config, path: Path) -> MeasuredConfig:
 def _with_split(config: Config, document: dict[str, Any], manifest: Path) -> MeasuredConfig:
     """Add the split to a document, and validate it as the config of a measured data set."""
     parts = document["recordings"]["parts"]
-    document["split"] = _split(config, parts, manifest)
+    document["split"] = _split(config, document["recordings"], manifest)
     if len(json.dumps(document)) > MAX_CONFIG:
         raise ConfigError(f"{manifest}: has {len(parts)} rows, too many for one data set")
     return validated(MeasuredConfig, document, str(manifest), *config._places)
 
 
-def _split(config: Config, parts: Sequence[dict[str, Any]], manifest: Path) -> dict[str, Any]:
-    """Make the section `split`; by subject, it has the number of persons in the manifest."""
+def _split(config: Config, section: dict[str, Any], manifest: Path) -> dict[str, Any]:
+    """Make the section `split`: the manifest's; by subject, with its number of persons."""
     split: dict[str, Any] = config.split.model_dump()
+    parts = section["parts"]
+    if parts[0].get("split") is not None:
+        return split | {"by": "sample", "subjects": None} | _stated_shares(section, manifest)
     if config.split.by == "subject":
         nobody = [number for number, part in enumerate(parts, 1) if part["person"] is None]
         if nobody:
@@ -309,6 +319,17 @@ def _split(config: Config, parts: Sequence[dict[str, Any]], manifest: Path) -> d
             )
         split["subjects"] = len({part["person"] for part in parts})
     return split
+
+
+def _stated_shares(section: dict[str, Any], manifest: Path) -> dict[str, float]:
+    """Shares of the windows that a manifest puts into each part of the split."""
+    recorded = validated(RecordingsConfig, section, str(manifest), {})
+    windows_of = Counter[str]()
+    for part in recorded.parts:
+        windows_of[str(part.split)] += recorded.count(part)
+    total = max(windows_of.total(), 1)
+    held_back = {name: round(windows_of[name] / total, 3) for name in ("validation", "test")}
+    return {"train": round(1 - sum(held_back.values()), 3), **held_back}
 
 
 def warnings_of(config: MeasuredConfig) -> list[str]:
@@ -325,7 +346,8 @@ def warnings_of(config: MeasuredConfig) -> list[str]:
     short = sum(not recorded.count(part) for part in recorded.parts)
     if short:
         warnings.append(f"{short} parts are shorter than the window of {recorded.window_s:g} s")
-    if config.split.by == "sample" and recorded.hop_s < recorded.window_s:
+    is_cut_by_window = config.split.by == "sample" and not recorded.has_split
+    if is_cut_by_window and recorded.hop_s < recorded.window_s:
         warnings.append(
             "windows of one recording may lie in several parts of the split; split.by: subject "
             "keeps persons apart"
@@ -392,11 +414,12 @@ class WindowFactory:
         """Read the sample of a window of a recording of points: its points and their sheet."""
         with PointRecording(self.folder / file) as recording:
             cloud = recording.window(start, config.recordings.window_s)
+            joints = recording.joints_within(start, config.recordings.window_s)
         products = {
             "points": cloud.points,
             "points_start": cloud.start,
             "points_person": np.full(len(cloud.points), NOBODY, np.int16),
-        }
+        } | ({"skeleton": joints} if config.recordings.joints else {})
         images = {"points": cloud_sheet(cloud, config.image.size_px)}
         return StoredSample(images, products=products)
 

@@ -3,9 +3,15 @@
 from functools import cached_property
 from math import floor
 from pathlib import PurePosixPath
-from typing import Annotated
+from typing import Annotated, Any, Literal, TypeAlias
 
-from pydantic import Field, field_validator, model_validator
+from pydantic import (
+    Field,
+    SerializerFunctionWrapHandler,
+    field_validator,
+    model_serializer,
+    model_validator,
+)
 
 from radhar_cli.schema.number import value_error
 from radhar_cli.schema.section import Flag, Section
@@ -14,6 +20,7 @@ MAX_WINDOWS = 1_000_000
 
 
 SLUG = r"[a-z][a-z0-9_]{0,62}"
+SplitName: TypeAlias = Literal["train", "validation", "test"]
 
 
 class RecordedPart(Section):
@@ -32,6 +39,12 @@ class RecordedPart(Section):
     """When the part begins."""
     stop_s: Annotated[float, Field(ge=0, le=1e7, strict=True)]
     """When the part ends."""
+    split: SplitName | None = None
+    """Part of the split, where the manifest says it."""
+
+    @model_serializer(mode="wrap")
+    def _without_unknown_split(self, serialise: SerializerFunctionWrapHandler) -> dict[str, Any]:
+        return _without(serialise(self), {"split": None})
 
     @field_validator("file")
     @classmethod
@@ -61,6 +74,14 @@ class RecordingsConfig(Section):
     """Lowest and highest edge of images that exist already, Hz (m of a range-time map)."""
     packed: Flag = False
     """Whether the columns of masks are bits."""
+    joints: Flag = False
+    """Whether recordings of points have joints beside them, filled in."""
+    source: Annotated[str, Field(max_length=500)] | None = None
+    """Where the recordings come from, for the data card."""
+
+    @model_serializer(mode="wrap")
+    def _without_defaults(self, serialise: SerializerFunctionWrapHandler) -> dict[str, Any]:
+        return _without(serialise(self), {"joints": False, "source": None})
 
     @model_validator(mode="after")
     def _require_few_windows(self) -> "RecordingsConfig":
@@ -86,6 +107,16 @@ class RecordingsConfig(Section):
         return {label: count for label, count in counts.items() if count}
 
     @property
+    def has_split(self) -> bool:
+        """Whether the manifest says how the recordings are split."""
+        return bool(self.parts) and self.parts[0].split is not None
+
+    @property
     def persons(self) -> tuple[str, ...]:
         """Names of all persons, in alphabetical order."""
         return tuple(sorted({part.person for part in self.parts if part.person is not None}))
+
+
+def _without(document: dict[str, Any], defaults: dict[str, Any]) -> dict[str, Any]:
+    """Leave keys out of plain values where they say nothing: most data sets do not have them."""
+    return {k: v for k, v in document.items() if k not in defaults or v != defaults[k]}

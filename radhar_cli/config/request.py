@@ -505,9 +505,10 @@ class MeasuredRequest(Section):
 
     @property
     def stored(self) -> tuple[str, ...]:
-        """Products that a data set holds as arrays: maps of frames, and recorded points."""
+        """Products that a data set holds as arrays: maps of frames, recorded points and joints."""
         of_frames = tuple(name for name in self.maps if name in FRAME_MAPS and name != "points")
-        return (*of_frames, *OF_POINTS) if "points" in self.maps else of_frames
+        joints = ("skeleton",) if self.recordings.joints else ()
+        return (*of_frames, *OF_POINTS, *joints) if "points" in self.maps else of_frames
 
     def samples_of(self, activity: Activity) -> int:
         """How many windows of an activity there are."""

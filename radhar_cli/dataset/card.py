@@ -223,6 +223,8 @@ def _summary(data: Dataset) -> str:
         view = f"what {_radar_in_words(config)} sees of {whom} {where}"
         content = f"{view}, simulated from the movement to the map."
     split = "Samples are split one by one."
+    if isinstance(config, MeasuredConfig) and config.recordings.has_split:
+        split = "Split as the list of recordings says."
     if config.split.subjects is not None:
         split = f"Split by person: none of the {config.split.subjects} is in two of its parts."
     count = len(config.chosen_activities)
@@ -276,7 +278,10 @@ def _making(data: Dataset) -> str:
         f"{library} {version}" for library, version in data.versions.items()
     )
     if isinstance(config, MeasuredConfig):
-        return f"`radhar generate --recordings`, seed {config.seed}; {library_versions}."
+        source = config.recordings.source
+        origin = "" if source is None else f"Recordings: {source}.\n\n"
+        command = "`radhar generate --recordings`" if source is None else "`radhar prepare`"
+        return f"{origin}{command}, seed {config.seed}; {library_versions}."
     return (
         f"`radhar generate config.yaml -o OUT`, seed {config.seed}, makes the same bytes again "
         f"with {library_versions}."

@@ -85,7 +85,7 @@ def reserve(
                 f"{folder}: holds parts of a data set; `radhar merge {folder}` puts them together, "
                 "--shard K/N makes one"
             )
-        refuse_foreign_files(folder, "radhar data set", (WORK, *allowed))
+        refuse_foreign_files(folder, "radhar data set", (WORK, layout.RECORDINGS, *allowed))
         _write_identity(folder, new)
     elif holds_samples(folder):
         refuse_differences(folder, "data set", differences(old, new))

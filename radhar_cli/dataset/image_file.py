@@ -1,5 +1,6 @@
 """The one reader of image files: five formats, one frame, a bounded number of pixels."""
 
+import io
 import warnings
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
@@ -81,15 +82,30 @@ def read_gray(
         return brightness(_rgb(image)) if levels is None else levels
 
 
+def gray_of_bytes(data: bytes, where: Path) -> Levels:
+    """Levels [H, W] of the bytes of an image file, as `read_gray` reads them of the file.
+
+    Args:
+        data: the bytes.
+        where: what messages call it.
+    """
+    with _open_image(where, None, data) as image:
+        levels = stored_levels(image)
+        return luminance(_rgb(image)) if levels is None else levels
+
+
 @contextmanager
-def _open_image(path: Path, size: tuple[int, int] | None) -> Iterator[Image.Image]:
+def _open_image(
+    path: Path, size: tuple[int, int] | None, data: bytes | None = None
+) -> Iterator[Image.Image]:
     """Open an image and check its header; errors of Pillow's parsers become a FolderError."""
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")
-            if regular_size(path) > MAX_FILE:
+            if (regular_size(path) if data is None else len(data)) > MAX_FILE:
                 raise FolderError(f"{path}: should be an image of at most {MAX_FILE} bytes")
-            with Image.open(path, formats=FORMATS) as image:
+            source = path if data is None else io.BytesIO(data)
+            with Image.open(source, formats=FORMATS) as image:
                 problem = _header_problem(image, size)
                 if problem is not None:
                     raise FolderError(f"{path}: {problem}")

@@ -31,6 +31,7 @@ CLASSES, METADATA = "classes.txt", "metadata.csv"  # beside the PNGs
 CARD = "README.md"
 GALLERY = "gallery.png"
 WORK = ".radhar"
+RECORDINGS = "recordings"  # of `radhar prepare`, which a data set was made of
 IDENTITY = "identity.json"
 BUILT = "built"  # marks the work folder of a data set, or of a part, that was whole once
 PARTS = "parts"

@@ -18,8 +18,12 @@ def split_rows(config: AnyConfig) -> Levels:
     """Split the rows of a data set; return the number of each [N]: 0 train, 1 validation, 2 test.
 
     By sample, each class is shuffled by its own stream and cut at round(share n). By subject the
-    persons are shuffled and cut, and every sample goes where its person goes.
+    persons are shuffled and cut, and every sample goes where its person goes. Recordings go where
+    their manifest says, if it does.
     """
+    if isinstance(config, MeasuredConfig) and config.recordings.has_split:
+        names = [window.part.split for window in windows(config)]
+        return np.array([SPLITS.index(str(name)) for name in names], np.uint8)
     rows, split, person = Rows.of(config), config.split, persons(config)
     if person is not None:
         assert split.subjects is not None

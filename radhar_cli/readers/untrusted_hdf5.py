@@ -45,6 +45,7 @@ MAX_TEXT = 2**20
 MAX_CELLS = 2**16
 MAX_CHUNK = 2**27  # bytes of a chunk
 _DEFLATE, _SHUFFLE = h5py.h5z.FILTER_DEFLATE, h5py.h5z.FILTER_SHUFFLE
+MOST_TRIED = 1000  # files: a variable holds 128 KiB
 _TRIED = "RADHAR_TRIED_HDF5"  # files that this process, or one that started it, has tried
 
 
@@ -87,7 +88,7 @@ def remember(path: Path) -> None:
     """Remember that a file is sound: it is not tried again, here or in processes started later."""
     version = _version_of(path)
     others = [tried for tried in os.environ.get(_TRIED, "").split() if tried != version]
-    os.environ[_TRIED] = " ".join([*others[-99:], version])
+    os.environ[_TRIED] = " ".join([*others[1 - MOST_TRIED :], version])
 
 
 def _version_of(path: Path) -> str:

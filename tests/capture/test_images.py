@@ -321,16 +321,18 @@ def test_texts_of_digits_are_indices_into_classes(tmp_path: Path) -> None:
     assert labels == [CLASSES[n % 3] for n in range(12)]
 
 
-def test_two_parts_are_joined_by_the_command_that_is_said(tmp_path: Path) -> None:
+def test_two_parts_of_keras_are_parts_of_the_split(tmp_path: Path) -> None:
     x = masks()
     arrays = {"x_train": x[:8], "y_train": LABELS[:8], "x_test": x[8:], "y_test": LABELS[8:]}
-    np.savez(tmp_path / "FILE.npz", **arrays)  # type: ignore[arg-type]
-    with pytest.raises(CaptureError, match="has x_train, x_test: should be one array") as caught:
-        list_images(tmp_path / "FILE.npz", packed=False)
-    assert str(tmp_path / "FILE.npz") in str(caught.value).split("`")[1]
-    run_command_of(str(caught.value), tmp_path)
-    labels = [part["label"] for part in list_images(tmp_path / "joined.npz", packed=False).parts]
-    assert labels == LABELS.tolist()
+    np.savez(tmp_path / "keras.npz", **arrays)  # type: ignore[arg-type]
+    parts = list_images(tmp_path / "keras.npz", packed=False).parts
+    assert [part["label"] for part in parts] == LABELS.tolist()
+    assert [part["split"] for part in parts] == 8 * ["train"] + 4 * ["test"]
+    read = images.read_image(tmp_path, "keras.npz/9", x.shape[1:], packed=False)
+    assert np.array_equal(read, 255 * x[9])
+    np.savez(tmp_path / "keras.npz", **arrays | {"x_test": x[8:, :4]})  # type: ignore[arg-type]
+    with pytest.raises(CaptureError, match="x_train and x_test differ in size"):
+        list_images(tmp_path / "keras.npz", packed=False)
 
 
 def run_command_of(message: str, folder: Path) -> None:

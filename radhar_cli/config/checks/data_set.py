@@ -134,6 +134,9 @@ def _problems_of_any_recording(c: MeasuredRequest) -> Iterator[Problem]:
     for key in ("column_labels", "slow_time", "products"):
         if value := getattr(c.output, key):
             yield Problem(f"output.{key}", value, "should be left out: recordings have none")
+    if len({part.split is None for part in c.recordings.parts}) > 1:
+        right = "should stand in every row of the manifest, or in none"
+        yield Problem("recordings.parts.split", None, right)
     named = {part.person for part in c.recordings.parts}
     if c.split.subjects is not None and (None in named or c.split.subjects != len(named)):
         right = f"should be the number of persons, {len(named - {None})}; every part names one"

@@ -16,7 +16,6 @@ from radhar_cli.config.radar import (
     ImpulseRadar,
     SfcwRadar,
     Steps,
-    SweptPulses,
 )
 from radhar_cli.config.request import AnyRequest, Request
 from radhar_cli.numerics.rounding import half_up, show_beside
@@ -217,7 +216,7 @@ def _problem_of_samples(radar: FramesRadar, samples: int) -> Problem:
 
 
 def _problem_of_length(
-    radar: SweptPulses | FramesRadar, longest: float, interval: float, right: str
+    radar: FmcwRadar | SfcwRadar | FramesRadar, longest: float, interval: float, right: str
 ) -> Problem:
     """Say that a chirp, or a sweep of steps, is too long.
 
@@ -373,7 +372,7 @@ def waveform_problems(c: AnyRequest) -> Iterator[Problem]:
         longest = support(radar.chirp_s)[1]
         interval = show_beside(shortest_interval, longest)
         right = f"should be at most the pulse interval 1/prf_hz = {interval} s"
-        assert isinstance(radar, SweptPulses | FramesRadar)
+        assert isinstance(radar, FmcwRadar | SfcwRadar | FramesRadar)
         yield _problem_of_length(radar, longest, shortest_interval, right)
     if smallest_count < 2:
         right = f"should give at least 2 {samples} {smallest_count})"

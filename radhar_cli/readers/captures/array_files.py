@@ -13,6 +13,7 @@ from pathlib import Path
 from typing import IO, Any, NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from radhar_cli.errors import CaptureError
 from radhar_cli.readers.captures.acconeer_files import FRAME, SparseIq, read_sparse_iq
@@ -131,6 +132,23 @@ def check_npz(archive: zipfile.ZipFile) -> dict[str, tuple[tuple[int, ...], str]
             raise ValueError(f"{member.filename} has the shape {shape}, but too few bytes")
         arrays[member.filename.removesuffix(".npy")] = shape, dtype.kind
     return arrays
+
+
+def read_npz_array(path: Path, name: str, max_bytes: int) -> NDArray[Any]:
+    """Read an array of plain numbers out of an .npz.
+
+    Raises:
+        CaptureError: the file is damaged, or has no such array of at most `max_bytes`.
+    """
+    with parser_errors_as_capture_errors(str(path)), zipfile.ZipFile(path) as archive:
+        shape, kind = check_npz(archive).get(name, ((), "O"))
+        if kind not in "iuf":
+            raise ValueError(f"holds no {name} of plain numbers; pickles are not opened")
+        if 8 * prod(shape) > max_bytes:
+            raise ValueError(f"{name} has the shape {[*shape]}, too large")
+        with archive.open(f"{name}.npy") as file:
+            array: NDArray[Any] = np.lib.format.read_array(file, allow_pickle=False)
+            return array
 
 
 def _open_hdf5(path: Path, files: CaptureFiles) -> Arrays:

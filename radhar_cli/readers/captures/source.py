@@ -14,7 +14,7 @@ from radhar_cli.readers.captures.settings import CaptureSettings
 
 Parts = NDArray[Any]
 PIECE_BYTES = 2**24
-HEAD_BYTES = 128  # by which a format is recognised
+HEAD_BYTES = 512  # by which a format is recognised
 
 
 @dataclass(frozen=True)

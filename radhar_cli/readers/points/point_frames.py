@@ -60,6 +60,8 @@ class PointFrame(NamedTuple):
         track: Number of the track that each point belongs to [n]; NO_TRACK for none.
         targets: What the tracker follows [t, 11], columns as TARGET_COLUMNS.
         time: Time on somebody's clock, s; None where nothing says it.
+        joints: Places of the thirteen joints [13, 3] in the axes of the points, m, as another
+            sensor saw them; None where there was none.
     """
 
     number: int
@@ -67,6 +69,7 @@ class PointFrame(NamedTuple):
     track: Float
     targets: Float
     time: float | None = None
+    joints: Float | None = None
 
 
 @dataclass(frozen=True)

@@ -82,6 +82,13 @@ class BodyConfig(Section):
         int, Field(ge=1, le=1000, strict=True), NeedsKey("body.scatterers", "segments", "surfaces")
     ] = 20
     """Largest number of points of a segment; a surface has 14 at most."""
+    cross_section_sd_db: Annotated[
+        float,
+        Field(ge=0, le=12, strict=True),
+        NeedsKey("body.scatterers", "segments", "surfaces"),
+    ] = 0.0
+    """Standard deviation, from person to person, of the cross sections of trunk, head, arms,
+    forearms, hands, thighs, shanks and feet: clothes and build. Both sides are alike."""
     shadowing: Annotated[Flag, NeedsAnyKey(_SEGMENTS, NeedsKey("people", GIVEN))] = True
     """Whether trunk and thighs hide the segments behind them and, with `people`, each person hides
     others."""

@@ -16,12 +16,13 @@ from radhar_cli.echo.bodies.motion_paths import (
 )
 from radhar_cli.echo.bodies.person_boxes import JOINTS, box_of_stature, boxes_of_body
 from radhar_cli.echo.bodies.segment_paths import Points, SegmentPaths, draw_points, point_counts
-from radhar_cli.echo.bodies.surface_paths import SurfacePaths, draw_surface
+from radhar_cli.echo.bodies.surface_paths import FACING_DBSM, SurfacePaths, draw_surface
 from radhar_cli.echo.paths import PathSource
 from radhar_cli.motion.protocol import Motion, ScattererSubset, cache_motion, cached_result
 from radhar_cli.motion.reflectors import Reflectors
 from radhar_cli.motion.segments import (
     Landmarks,
+    Segment,
     landmark_names,
     segments_between,
     segments_of_joint,
@@ -203,9 +204,11 @@ def make_body_paths(
         return None
     largest_count, numbers = config.body.points_per_segment, tuple(segments)
     antennas, wall, waveform, first = link
+    fields = _draw_fields(person, body.segments)
     if config.body.scatterers == "surfaces":
         rng = person.stream(f"surface/{number}")
         surface = draw_surface(len(body.segments), min(largest_count, POINTS), rng)
+        surface = surface._replace(weight=surface.weight * fields[surface.segment])
         return SurfacePaths(body, surface, antennas, waveform.fc, wall, numbers)
     duration, prf = waveform.duration, waveform.prf
     window = config.processing.make_frames(duration, prf, waveform.f0).length / prf
@@ -216,10 +219,24 @@ def make_body_paths(
         _taper(draw_points(count, person.own_stream(f"body/{number}/{segment.name}")))
         for segment, count in zip(body.segments, counts, strict=True)
     )
+    points = tuple(
+        one._replace(share=one.share * field) for one, field in zip(points, fields, strict=True)
+    )
     fast = compiled.pays(sum(counts[s] for s in numbers) * waveform.n_pulses)
     return SegmentPaths(
         body, points, antennas, waveform.fc, wall, config.body.shadowing, numbers, fast
     )
+
+
+def _draw_fields(person: Person, segments: tuple[Segment, ...]) -> Float:
+    """Draw the fields [S] of a person's segments relative to the usual, alike on both sides."""
+    sd = person.scene.config.body.cross_section_sd_db
+    kinds = [segment.name.split("_")[-1] for segment in segments]
+    if not sd:
+        return np.ones(len(kinds))
+    rng = person.own_stream("body/cross_sections")
+    level = dict(zip(FACING_DBSM, sd * rng.standard_normal(len(FACING_DBSM)), strict=True))
+    return 10 ** (np.array([level[kind] for kind in kinds]) / 20)
 
 
 def _taper(points: Points) -> Points:

@@ -231,6 +231,7 @@ CHANGES: dict[str, object] = {
     "wall.layers": (LayerConfig(material="brick"),),
     "body.scatterers": "segments",
     "body.points_per_segment": 6,
+    "body.cross_section_sd_db": 3.0,
     "body.shadowing": False,
     "snr_db": None,
     "people": (PersonConfig(),),

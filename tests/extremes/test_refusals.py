@@ -42,6 +42,7 @@ LIMITS: Limits = of_the_schema() | {
     "processing.range_fft_length": (400, 25600, 398, 25602),
     "processing.window_s": (0.0016, 3.9998, 0.0014, 4.0),
     "body.points_per_segment": (1, 1000, 0, 1001),
+    "body.cross_section_sd_db": (0, 12, -1, 13),
     "processing.overlap_fraction": (0, 0.9999, -0.1, 1),
     "processing.stft_fft_length": (2000, 128000, 1999, 128001),
     "processing.savgol.order": (0, 30, -1, 31),

@@ -74,7 +74,8 @@ def _number_frames(rows: Float) -> Index:
     # Of each pair the second comes at once: it is the next frame, whatever its clock says.
     place = np.arange(len(by_clock))
     numbers: Index = (place + np.maximum.accumulate(by_clock - place)).astype(np.intp)
-    return numbers[np.cumsum(begins) - 1]
+    of_rows: Index = numbers[np.cumsum(begins) - 1]
+    return of_rows
 
 
 RECIPE = SetRecipe(

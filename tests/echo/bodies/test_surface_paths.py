@@ -11,17 +11,18 @@ from radhar_cli.echo.bodies.surface_paths import DEPTH, FACING_DBSM, SurfacePath
 from radhar_cli.motion.protocol import cache_motion
 from radhar_cli.scene.motion import motion_of
 from radhar_cli.scene.paths import Link, make_body_paths
+from radhar_cli.scene.products.run import record
 from radhar_cli.scene.radar import antennas_of, waveform_of
 from radhar_cli.scene.scene import Scene, draw_scene
 
 T = np.linspace(0, 1, 7)
 
 
-def scene(seed: int = 1) -> Scene:
+def scene(seed: int = 1, **body: object) -> Scene:
     document = {
         "seed": seed,
         "activities": ["stationary"],
-        "body": {"scatterers": "surfaces"},
+        "body": {"scatterers": "surfaces"} | body,
         "motion": {"range_m": 3, "angle_deg": 180},
         "subject": {"height_m": 1.75},
     }
@@ -78,6 +79,26 @@ def test_delays_are_those_of_the_points_but_for_a_wavelength() -> None:
     ways = leg(p, paths.antennas.tx) + leg(p, paths.antennas.rx)
     off = np.abs(paths(T).delay * 299792458.0 - ways)
     assert off.max() <= 299792458.0 / paths.fc / 2
+
+
+@pytest.mark.parametrize("scatterers", ["segments", "surfaces"])
+def test_cross_sections_are_drawn_by_a_stream_of_their_own(scatterers: str) -> None:
+    """Points stay; both sides of a kind are as much brighter at all times, scenes differ by sd."""
+    levels = []
+    for seed in range(1, 16):
+        usual, drawn = (
+            record(scene(seed, scatterers=scatterers, cross_section_sd_db=sd), ["paths"])["paths"]
+            for sd in (0.0, 3.0)
+        )
+        before, after = usual(T), drawn(T)
+        np.testing.assert_array_equal(after.delay, before.delay)
+        seen = before.amplitude > 0
+        level = 20 * np.log10(after.amplitude[seen] / before.amplitude[seen])
+        kinds = np.unique(level.round(6))
+        assert kinds.size == len(FACING_DBSM)
+        levels.append(kinds)
+    assert np.std(levels) == pytest.approx(3, abs=0.8)
+    assert np.mean(levels) == pytest.approx(0, abs=0.9)
 
 
 def test_the_same_stream_gives_the_same_paths_and_time_goes_on_smoothly() -> None:

@@ -5,7 +5,8 @@ from pathlib import Path
 import h5py
 import numpy as np
 import pytest
-from capture.test_array_files import RADAR, cube, imported, save
+from capture.test_array_files import AXES, cube, imported, save
+from capture.test_array_files import RADAR as NUMBERS
 from helpers.command_line import radhar
 
 from radhar_cli.capture.findings import LOST
@@ -13,6 +14,7 @@ from radhar_cli.capture.importing import import_capture, read_settings
 from radhar_cli.capture.recording import Recording
 from radhar_cli.errors import CaptureError, FolderError
 
+RADAR = [*NUMBERS, AXES]
 SET = [word for one in RADAR for word in ("--set", one)]
 CONFIG = "maps: [stft]\nimage: {size_px: 32}\nprocessing: {clutter: mean}\n"
 
@@ -195,6 +197,6 @@ def test_a_few_bytes_are_no_capture(tmp_path: Path, size: int) -> None:
 
 def test_times_that_are_no_seconds_are_refused(tmp_path: Path) -> None:
     np.savez(tmp_path / "x.npz", beat=cube(), t=1e-20 * np.arange(40))
-    settings = read_settings(None, [*RADAR[:3], "times=t", "dataset=beat"])
+    settings = read_settings(None, [*RADAR[:3], AXES, "times=t", "dataset=beat"])
     with pytest.raises(CaptureError, match=r"1e\+20 pulses/s; times should be in s"):
         import_capture([tmp_path / "x.npz"], tmp_path / "o.h5", settings)

@@ -142,8 +142,10 @@ def test_samples_in_another_form_give_the_same_maps(tmp_path: Path, radar: str) 
         samples = samples if recording.samples.parts == 2 else samples.real
         kind = recording.info.content.dataset
     file = write_as(FORMS[radar], tmp_path / "x", samples if len(samples) > 1 else samples[0])
+    axes = ("--set", "axes=[sample,pulse]")
     options = {
-        "beat": ("--set", "holds=beat", "--set", "beat=negative"),
+        "beat": ("--set", "holds=beat", "--set", "beat=negative", *axes),
+        "profiles": axes,
         "slow_time": ("--set", "axes=[pulse]"),  # not I and Q by turns
     }.get(kind, ())
     again = tmp_path / "again.h5"

@@ -234,16 +234,18 @@ def test_maps_of_the_fitted_config_have_the_axes_of_the_recording(tmp_path, name
 
 
 @pytest.mark.parametrize("form", ["receiver first", "pulse first", "real numbers"])
-def test_receivers_of_a_cw_header_are_known_in_an_array(tmp_path, form):
-    """One frequency has no samples of a chirp: what is as long as the array is its receivers."""
+def test_receivers_of_a_cw_header_are_an_axis_of_an_array(tmp_path, form):
+    """One frequency has no samples of a chirp; each receiver has a row, or a column."""
     path, recording = recorded(tmp_path, "cw_array")
     with h5py.File(recording) as file:
         samples = file["slow_time"][:]
     array = samples if form == "receiver first" else samples.T
+    axes = "receiver,pulse" if form == "receiver first" else "pulse,receiver"
     if form == "real numbers":
-        array = np.stack([array.real, array.imag], axis=-1)
+        array, axes = np.stack([array.real, array.imag], axis=-1), f"{axes},iq"
     np.save(tmp_path / "module.npy", array)
-    ok("import", tmp_path / "module.npy", "--radar", path, "-o", tmp_path / "again.h5")
+    named = ("--set", f"axes=[{axes}]")
+    ok("import", tmp_path / "module.npy", "--radar", path, *named, "-o", tmp_path / "again.h5")
     with h5py.File(tmp_path / "again.h5") as file:
         np.testing.assert_array_equal(file["slow_time"][:], samples)
 

@@ -13,7 +13,6 @@ from radhar_cli.config.starting_file import of_board
 from radhar_cli.radar.board import device_name
 from radhar_cli.radar.room import RoomBox
 from radhar_cli.scene.checks.warnings import config_warnings
-from radhar_cli.scene.products.board import CloudChain
 
 TRACKING = f"{CFG}sensorPosition 2 10 15\n"
 WITHOUT_CFAR = CFG.replace("cfarCfg 0 2 8 4 3 0 1130\n", "")
@@ -219,9 +218,10 @@ def test_a_box_of_the_room_is_kept_to_on_demand() -> None:
     with pytest.raises(ValueError, match=r"radar\.cfg has no boundaryBox"):
         board(CFG, cloud={"boundary_box": True})
     lines = f"{CFG}boundaryBox -1 2 0.5 6 0 2\n"
-    assert CloudChain.of(board(lines)).box is None
-    box = CloudChain.of(board(lines, cloud={"boundary_box": True})).box
-    assert box == RoomBox((0.5, 6), (-2, 1), (0, 2))
+    assert not board(lines).cloud.boundary_box
+    config = board(lines, cloud={"boundary_box": True})
+    assert config.cloud.boundary_box
+    assert config.radar.header.box == RoomBox((0.5, 6), (-2, 1), (0, 2))
 
 
 TOGETHER = """

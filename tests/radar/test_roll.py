@@ -13,7 +13,6 @@ from radhar_cli.config.radar import BoardRadar
 from radhar_cli.processing.frame_maps import range_angle
 from radhar_cli.radar.board import DEVICES
 from radhar_cli.radar.propagation import boresight_axes
-from radhar_cli.scene.products.board import turn_points
 from radhar_cli.scene.products.run import record
 from radhar_cli.scene.scene import Scene, nominal_scene
 
@@ -54,7 +53,7 @@ def test_points_keep_their_places_in_the_room(roll: float, left: float, up: floa
     point = np.zeros((1, 8))
     point[0, :3] = 3.0, left, up
     before = point[0, :3] @ np.array(board.aim.axes)
-    after = turn_points(point, board)[0, :3] @ np.array(board.upright.axes)
+    after = board.without_roll(point[:, :3])[0] @ np.array(board.upright.axes)
     np.testing.assert_allclose(before, after, atol=1e-12)
 
 

@@ -168,10 +168,10 @@ def test_fewer_bits_than_16_are_named() -> None:
 def test_transmitters_may_send_less_power() -> None:
     """A byte for each, the first lowest: 0x060606 are 6 dB each, as in TI's people tracking."""
     less = parse_ti_cfg(CFG.replace("7 40 0 0 100", "7 40 394758 0 100"))
-    assert (less.profile.backoff_db, less.not_simulated) == ((6, 6, 6, 0), ())
+    assert (less.timing.backoff_db, less.not_simulated) == ((6, 6, 6, 0), ())
     alone = parse_ti_cfg(CFG.replace("7 40 0 0 100", "7 40 0x0300 0 100"))
-    assert alone.profile.backoff_db == (0, 3, 0, 0)
-    assert parse_ti_cfg(CFG).profile.backoff_db == ()
+    assert alone.timing.backoff_db == (0, 3, 0, 0)
+    assert parse_ti_cfg(CFG).timing.backoff_db == ()
 
 
 def test_turned_phases_are_named() -> None:
@@ -323,7 +323,7 @@ def test_profiles_may_differ_in_the_time_that_they_take(
 
 def test_each_transmitter_has_the_power_of_its_own_profile() -> None:
     header = parse_ti_cfg(with_second_profile("77 17 7 40 394758"))
-    assert header.profile.backoff_db == (0, 6, 6, 0)
+    assert header.timing.backoff_db == (0, 6, 6, 0)
     assert header.timing.chirp_starts_s == ()
     both = with_second_profile("77 17 7 40 394758").replace("0 0 0 0 2\n", "0 0 0 0 1\n")
     with pytest.raises(CaptureError, match="should have the txOutPower of the other chirps"):

@@ -144,7 +144,7 @@ def test_a_built_in_radar_fits_its_device(radar: BuiltInRadar) -> None:
     assert radar.device in fitting_devices(radar.header)
     array = DEVICES[radar.device].array
     assert not compare_elements(
-        radar.header.elements, array, radar.timing.antennas_of_channels
+        radar.header.elements, array, radar.header.timing.antennas_of_channels
     ).commands
 
 

@@ -19,7 +19,7 @@ from radhar_cli.scene.room import ways_of
 from radhar_cli.scene.scene import Scene, nominal_scene
 
 ISK = replace(
-    MARS, array=DEVICES["IWR6843ISK"].array, order=(0, 1, 2), frames=1, position=(0.1, 0.0, 1.0)
+    MARS, array=DEVICES["IWR6843ISK"].array, masks=(1, 2, 4), frames=1, position=(0.1, 0.0, 1.0)
 )
 
 

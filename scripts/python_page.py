@@ -98,7 +98,7 @@ def _describe(name: str, value: Any) -> list[str]:
 
 
 def _signature(name: str, value: Any) -> list[str]:
-    return ["```python", f"{name}{_arguments(value)}", "```\n"]
+    return ["```py", f"{name}{_arguments(value)}", "```\n"]
 
 
 def _arguments(value: Any) -> str:

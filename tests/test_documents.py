@@ -42,7 +42,7 @@ from radhar_cli.config import Config, load_config, load_radars
 from radhar_cli.motion.skeleton import JOINTS
 from radhar_cli.scene.checks.drawing import draw_valid_scene
 
-LANGUAGES = {"sh", "bash", "yaml", "python", "text"}  # text is not run
+LANGUAGES = {"sh", "bash", "yaml", "python", "py", "text"}  # signatures (py), text are not run
 # What no test can run, by a part of the block, and why.
 NOT_RUN = {
     "dask_jobqueue": "needs SLURM",

@@ -126,13 +126,13 @@ def _list_radars() -> None:
 
 
 def list_configs() -> None:
-    """List the configs that radhar comes with; their names go where a config is asked for.
+    """List the configs that radhar comes with.
+
+    Their names go where a config is asked for: `radhar generate human/room -o datasets/room`.
 
     Example:
 
       radhar config list
-
-      radhar generate human/room -o datasets/room --dry-run
     """
     from radhar_cli.config.documents import PRESETS
     from radhar_cli.config.starting_file import describe_preset

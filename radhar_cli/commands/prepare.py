@@ -38,7 +38,9 @@ def prepare(
     ] = None,
     overwrite: StartOver = False,
 ) -> None:
-    """Build a data set from a public download, or from points or images of your own.
+    """Build a data set from a public download.
+
+    Tables of points and images of your own are read as well.
 
     Recordings are kept in OUT/recordings, with the manifest that `generate --recordings` takes.
 

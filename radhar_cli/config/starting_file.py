@@ -86,7 +86,8 @@ def as_commented_yaml(kind: type[Section]) -> str:
 
 
 def _lines(kind: type[Section], left_out: Collection[str] = ()) -> Iterator[str]:
-    defaults = kind.model_construct().model_dump(mode="json")  # nothing filled in for null
+    plain = {name: field.default for name, field in kind.model_fields.items()}
+    defaults = plain | kind.model_construct().model_dump(mode="json")  # nothing filled in for null
     descriptions, about = kind.descriptions(), annotations(kind)
     for name, field in kind.model_fields.items():
         if field.exclude or name in left_out:

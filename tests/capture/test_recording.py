@@ -121,6 +121,8 @@ def test_one_receiver_is_singular(tmp_path: Path) -> None:
     np.save(tmp_path / "capture.npy", np.ones((16, 32), "c8"))
     out = tmp_path / "walk.h5"
     chirps = ("carrier_hz=1e10", "prf_hz=500", "bandwidth_hz=1e9", "adc_rate_hz=1e6")
-    sets = [part for one in (*chirps, "beat=negative") for part in ("--set", one)]
+    sets = [
+        part for one in (*chirps, "beat=negative", "axes=[sample,pulse]") for part in ("--set", one)
+    ]
     done = radhar("import", tmp_path / "capture.npy", *sets, "-o", out)
     assert "32 pulses at 500 Hz: 1 receiver, 16 samples a chirp" in done.stdout, done.stderr

@@ -50,7 +50,7 @@ def full_disk(limit):
         (PROCESS, 10_000, "/maps.h5", []),
         (SCENE, 10_000, "/scene.h5", []),
         (SCENE, 500_000, "/recording.h5", ["scene.h5", "scene.json", "scene.yaml"]),
-        (f"import capture.npy {RADAR}", 10_000, "", []),
+        (f"import capture.npy {RADAR} --set axes=[receiver,sample,pulse]", 10_000, "", []),
         ("convert set --to parquet", 10_000, "", []),
     ],
 )

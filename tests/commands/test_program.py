@@ -116,7 +116,7 @@ def test_the_examples_of_a_help_can_be_run(name):
     examples = re.findall(r"^ +radhar (.*(?:\n +\S.*)*)$", HELPS[name].help, re.MULTILINE)
     assert examples, "has no example"
     for words in map(shlex.split, examples):
-        assert " ".join(words).startswith(f"{name} ")
+        assert f"{' '.join(words)} ".startswith(f"{name} ")
         known, arguments = get_command(program()), words
         while hasattr(known, "commands"):
             first, *arguments = arguments

@@ -108,7 +108,7 @@ def test_mistakes_are_refused_in_one_line(config):
         ({"seed": [1]}, "seed = .1.: should be"),
         ({"activity": 7}, "activity = 7: should be a slug"),
         ({"config": "x.yaml"}, r"x\.yaml: no such file"),
-        ({"config": 7}, "config = 7: should be the path of a YAML file, or a Config"),
+        ({"config": 7}, "config = 7: should be the path of a YAML file, a name that"),
     ):
         with pytest.raises(ConfigError, match=words):
             sample(**{"config": config, "activity": "walking", **more})

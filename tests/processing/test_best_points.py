@@ -81,9 +81,9 @@ def test_few_elements_tell_what_they_can(name: str, chain: str) -> None:
     p = 2 * np.array([np.sqrt(1 - 0.3**2 - 0.2**2), 0.3, 0.2])
     board = {
         "array": Array((HERE,), receivers, (1.0,) * len(receivers), WIDE),
-        "order": (0,),
+        "masks": (1,),
         "receivers": tuple(range(len(receivers))),
-        "slot": 171e-6,
+        "slot_s": 171e-6,
     }
     cube, given = cube_of(p, -p / 2, **board)
     if chain == "best":

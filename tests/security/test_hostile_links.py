@@ -30,7 +30,9 @@ def next_file_of_a_capture(folder: Path) -> Case:
 
 def recording_of_a_manifest(folder: Path) -> Case:
     np.save(folder / "x.npy", np.random.default_rng(0).standard_normal((8, 400)))
-    import_capture([folder / "x.npy"], folder / "x.h5", read_settings(None, HEADER))
+    import_capture(
+        [folder / "x.npy"], folder / "x.h5", read_settings(None, [*HEADER, "axes=[sample,pulse]"])
+    )
     (folder / "m.csv").write_text("file,label\nx.h5,walking\n")
     (folder / "c.yaml").write_text("maps: [stft]\nrecordings: {window_s: 0.2}\n")
     config = load_config(folder / "c.yaml")

@@ -22,7 +22,7 @@ from radhar_cli.schema.section import B, ByActivity, Section, default_draw
 
 
 class KneelingConfig(Section, Generic[B]):
-    """Kneeling."""
+    """Kneeling on the floor."""
 
     sit_back: Annotated[
         B, ByActivity(NOT_NEGATIVE, RATIO), People("kneeling kneeling_down", 0, 1)

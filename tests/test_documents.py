@@ -323,7 +323,7 @@ def tell(page: Path, folder: Path) -> None:
         if name := config_name(block):
             (folder / name).write_text(yaml.safe_dump(small(yaml.safe_load(block.text))))
     for block in told:
-        if block.language != "text" and not any(part in block.text for part in NOT_RUN):
+        if block.language not in ("text", "py") and not any(part in block.text for part in NOT_RUN):
             run_block(block, folder)
 
 

@@ -70,8 +70,8 @@ def choose_arrays(
     if len(candidates) > 1:
         candidates = [name for name in candidates if is_complex(name)] or candidates
     if len(candidates) != 1:
-        listed = [*shapes.items()][:MOST_LISTED]
-        arrays = ", ".join(f"{name} {[*shape]}" for name, shape in listed) or "none"
+        shown_arrays = [*shapes.items()][:MOST_LISTED]
+        arrays = ", ".join(f"{name} {[*shape]}" for name, shape in shown_arrays) or "none"
         raise CaptureError(
             f"{path}: --set dataset=NAME should name the samples, or dataset=NAME and "
             f"imaginary=NAME I and Q; there are {arrays}{advice}"

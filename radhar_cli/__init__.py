@@ -42,7 +42,7 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:  # for the completion of editors
     from radhar_cli.config import load_config as load_config
     from radhar_cli.config import load_radars as load_radars
-    from radhar_cli.dataset.generating import generate as generate
+    from radhar_cli.dataset.interface import generate as generate
     from radhar_cli.dataset.on_demand import sample as sample
     from radhar_cli.dataset.reading import open_dataset as open_dataset
     from radhar_cli.learning.interface import evaluate as evaluate
@@ -60,7 +60,7 @@ _INTERFACE = {
     "load_config": "radhar_cli.config",
     "load_radars": "radhar_cli.config",
     "simulate": "radhar_cli.scene.single.simulate",
-    "generate": "radhar_cli.dataset.generating",
+    "generate": "radhar_cli.dataset.interface",
     "train": "radhar_cli.learning.interface",
     "evaluate": "radhar_cli.learning.interface",
     "audit": "radhar_cli.study.audit.audit",

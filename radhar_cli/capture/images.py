@@ -90,13 +90,13 @@ def list_images(path: Path, packed: bool) -> ImageListing:
     """
     if path.is_dir():
         parquet = sorted(path.glob(f"*{PARQUET}")) or sorted(path.glob(f"*/*{PARQUET}"))
-        return _list_packed(path, parquet, packed) if parquet else _list_tree(path)
+        return _list_archives(path, parquet, packed) if parquet else _list_tree(path)
     if path.suffix.lower() in TABLES:
         return _list_table(path)
-    return _list_packed(path.parent, [path], packed)
+    return _list_archives(path.parent, [path], packed)
 
 
-def _list_packed(folder: Path, paths: Sequence[Path], packed: bool) -> ImageListing:
+def _list_archives(folder: Path, paths: Sequence[Path], packed: bool) -> ImageListing:
     """List the images of files that hold many each."""
     parts, checksums, sizes = list[dict[str, Any]](), dict[str, str](), set[tuple[int, int]]()
     for path in paths:
@@ -104,7 +104,7 @@ def _list_packed(folder: Path, paths: Sequence[Path], packed: bool) -> ImageList
             refuse_outside(path, folder)
         with parser_errors_as_capture_errors(str(path)):
             regular_size(path)
-        held, name = _load_packed(path, packed), path.relative_to(folder).as_posix()
+        held, name = _load_archive(path, packed), path.relative_to(folder).as_posix()
         with path.open("rb") as file:
             checksums[name] = hashlib.file_digest(file, "sha256").hexdigest()
         sizes.add((held.images.shape[1], held.images.shape[2]))
@@ -218,7 +218,7 @@ def _list_table(path: Path) -> ImageListing:
     return ImageListing([*parts.values()], {path.name: total.hexdigest()}, image_size(first))
 
 
-class PackedImages(NamedTuple):
+class ImageArchive(NamedTuple):
     """Images of a file that holds many."""
 
     images: Levels  # [N, H, W]
@@ -227,19 +227,19 @@ class PackedImages(NamedTuple):
     split: NDArray[Any] | None  # part of the split of each [N], where it is known
 
 
-def _load_packed(path: Path, packed: bool) -> PackedImages:
+def _load_archive(path: Path, packed: bool) -> ImageArchive:
     """Read the images of an .npz, unpacking packed bits, or of Parquet."""
     load = _load_parquet if path.suffix.lower() == PARQUET else _load_npz
     return load(path, packed, path.stat().st_mtime_ns)
 
 
 @lru_cache(maxsize=2)
-def _load_parquet(path: Path, packed: bool, changed: int) -> PackedImages:
+def _load_parquet(path: Path, packed: bool, changed: int) -> ImageArchive:
     """Read the images of Parquet, whose part of the split its name begins with."""
     del packed, changed
     held = read_parquet_images(path, (*IMAGES, *FILES), LABELS, PERSONS)
     split = SPLIT_WORDS.get(re.split(r"[-_.]", path.name.lower())[0])
-    return PackedImages(
+    return ImageArchive(
         held.levels,
         np.array(held.labels, object),
         None if held.persons is None else np.array(held.persons, object),
@@ -248,7 +248,7 @@ def _load_parquet(path: Path, packed: bool, changed: int) -> PackedImages:
 
 
 @lru_cache(maxsize=2)
-def _load_npz(path: Path, packed: bool, changed: int) -> PackedImages:
+def _load_npz(path: Path, packed: bool, changed: int) -> ImageArchive:
     """Read the images of an .npz."""
     del changed
     with parser_errors_as_capture_errors(str(path)), zipfile.ZipFile(path) as archive:
@@ -291,7 +291,7 @@ def _load_npz(path: Path, packed: bool, changed: int) -> PackedImages:
                 )
         if person is not None and len(person) != len(images):
             raise ValueError(f"person should name the person in each of {len(images)} images")
-    return PackedImages(images, label, person, split)
+    return ImageArchive(images, label, person, split)
 
 
 class _ArrayNames(NamedTuple):
@@ -417,7 +417,7 @@ def read_image(folder: Path, file: str, size: tuple[int, int], packed: bool) -> 
     if place.parent.suffix.lower() not in (NPZ, PARQUET):
         return read_gray(folder / file, size)
     path = folder / place.parent
-    images = _load_packed(path, packed).images
+    images = _load_archive(path, packed).images
     number = int(place.name) if place.name.isdecimal() else len(images)
     if number >= len(images) or images.shape[1:] != size:
         raise CaptureError(f"{path}: image {place.name}: is missing, or not {size[0]} x {size[1]}")

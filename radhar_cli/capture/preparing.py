@@ -17,8 +17,8 @@ from radhar_cli.capture.point_recording import PointRecording, is_point_recordin
 from radhar_cli.capture.recipes.recipe import SetRecipe, Take
 from radhar_cli.capture.recipes.registry import find_recipe
 from radhar_cli.capture.recording import Label, Recording
-from radhar_cli.capture.windows import COLUMNS, MAX_MANIFEST, with_recordings
-from radhar_cli.config.data_set import Config, ConfigOfRecordings, MeasuredConfig
+from radhar_cli.capture.windows import COLUMNS, MAX_MANIFEST
+from radhar_cli.config.data_set import Config, ConfigOfRecordings
 from radhar_cli.config.reading import validated, with_overrides
 from radhar_cli.dataset.folder import folder_lock, refuse_foreign_files, stored_identity
 from radhar_cli.dataset.layout import RECORDINGS, WORK
@@ -36,15 +36,15 @@ VALIDATION_OF = 5  # every so many recordings of training validate, where the au
 
 @dataclass(frozen=True)
 class Preparation:
-    """What is to be prepared.
+    """A data set to prepare: its recipe, download and settings.
 
     Attributes:
         name: Name of the recipe.
         recipe: The recipe.
         folder: Folder of the download, absolute.
-        settings: What the recipe asked for.
+        settings: Settings that the recipe asks for.
         config: Config of the data set.
-        has_own_split: Whether the user says how it is split.
+        has_own_split: Whether the user gives the split.
     """
 
     name: str
@@ -59,11 +59,11 @@ class Prepared(NamedTuple):
     """Recordings of a download.
 
     Attributes:
-        manifest: What `radhar generate --recordings` takes.
+        manifest: Manifest for `radhar generate --recordings`.
         takes: Number of takes in the download.
         new: Number of recordings that this run made.
-        left_out: Why each take that is left out is.
-        notes: What else there is to say.
+        left_out: Reason for each take that is left out.
+        notes: Other remarks for the user.
     """
 
     manifest: Path
@@ -120,7 +120,7 @@ def prepare_recordings(
     listed = preparation.recipe.list_takes(preparation.folder, preparation.settings)
     if isinstance(listed, Path):
         return Prepared(listed, 0, 0, (), ())
-    takes = _checked_takes(listed, preparation)
+    takes = _require_takes(listed, preparation)
     recordings = out.absolute() / RECORDINGS
     with folder_lock(out.absolute()):
         _reserve(preparation, out.absolute(), overwrite)
@@ -146,16 +146,7 @@ def prepare_recordings(
     return Prepared(recordings / MANIFEST, len(takes), len(missing), left_out, tuple(notes))
 
 
-def config_of_prepared(preparation: Preparation, prepared: Prepared) -> MeasuredConfig:
-    """Make the config of the data set of recordings that were made.
-
-    Raises:
-        ConfigError: they cannot be used together.
-    """
-    return with_recordings(preparation.config, prepared.manifest)
-
-
-def _checked_takes(listed: Iterable[Take], preparation: Preparation) -> list[Take]:
+def _require_takes(listed: Iterable[Take], preparation: Preparation) -> list[Take]:
     """Check that there are takes, each with a name of its own."""
     by_name = dict[str, Take]()
     for take in listed:
@@ -230,7 +221,7 @@ def _write_take(take: Take, path: Path) -> tuple[str, str | None]:
 
 
 def _splits(takes: Sequence[Take], has_own_split: bool) -> tuple[list[str | None], list[str]]:
-    """Part of the split of each take, where the authors say it, and what there is to say of it."""
+    """Part of the split of each take, if the authors state it, and remarks on it."""
     splits, notes = [take.split for take in takes], list[str]()
     if has_own_split or None in splits:
         return [None] * len(takes), notes

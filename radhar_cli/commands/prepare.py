@@ -56,12 +56,8 @@ def prepare(
     if folder is None or out is None:
         raise ConfigError(f"should be: radhar prepare {name} FOLDER -o DATASET")
     with resumable(f"what is finished in {out}"):
-        from radhar_cli.capture.preparing import (
-            config_of_prepared,
-            prepare_recordings,
-            read_preparation,
-        )
-        from radhar_cli.capture.windows import WindowFactory, warnings_of
+        from radhar_cli.capture.preparing import prepare_recordings, read_preparation
+        from radhar_cli.capture.windows import WindowFactory, warnings_of, with_recordings
         from radhar_cli.commands.terminal import BarProgress, print_outcome
         from radhar_cli.dataset.build import build
         from radhar_cli.dataset.workers import cores
@@ -78,7 +74,7 @@ def prepare(
                 bars.say(f"warning: {more} more are left out")
             for note in prepared.notes:
                 bars.say(note)
-            config = config_of_prepared(preparation, prepared)
+            config = with_recordings(preparation.config, prepared.manifest)
             for warning in warnings_of(config):
                 bars.say(f"warning: {warning}")
             manifest = prepared.manifest

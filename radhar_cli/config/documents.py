@@ -12,7 +12,7 @@ from typing import Any, TypeAlias
 
 from radhar_cli.config.motion import EARLIER_KEYS
 from radhar_cli.config.yaml_reader import MAX_TEXT, parse_yaml
-from radhar_cli.errors import ConfigError
+from radhar_cli.errors import ConfigError, did_you_mean
 from radhar_cli.files.untrusted import read_text, text_of
 from radhar_cli.radar.board import plain_name
 from radhar_cli.schema.number import FORMS
@@ -102,11 +102,16 @@ def find_config(path: Path) -> Path:
 
     The latter has a name, as `human/room` or `room`, or stands in the documentation as
     `configs/human/room.yaml`. A name with a suffix alone, as `room.yaml`, is that of a file.
+
+    Raises:
+        ConfigError: there is no such file, but a config of radhar has a name like it.
     """
     name = path.as_posix()
     if path.exists() or (path.suffix and not name.startswith("configs/")):
         return path
     preset = _preset_called(name)
+    if preset is None and not path.suffix and (close := did_you_mean(name, PRESETS, "")):
+        raise ConfigError(f"{path}: no such file, and no config of radhar; {close}")
     return path if preset is None else PRESETS[preset]
 
 
@@ -259,7 +264,8 @@ def read_on_bases(source: Source, overrides: Mapping[str, Any]) -> tuple[Documen
     while base is not None:
         referred_from = f"{referred_from}: {BASE} = {json.dumps(base)[:120]}"
         if not isinstance(base, str) or not (base.endswith(SUFFIXES) or base in PRESETS):
-            advice = f"; {named}" if (named := advice_on_radars(base)) else ""
+            close = did_you_mean(str(base), PRESETS, "") if isinstance(base, str) else ""
+            advice = f"; {named}" if (named := advice_on_radars(base) or close) else ""
             raise ConfigError(
                 f"{referred_from}: should be the path of a {', '.join(SUFFIXES)} file, or a name "
                 f"that `radhar config list` has{advice}"

@@ -73,6 +73,24 @@ def read_text(path: Path, max_bytes: int) -> str:
     return data.decode()
 
 
+def bytes_of(path: Path, max_bytes: int, refused: type[RadharError]) -> bytes:
+    """Read a regular file of at most `max_bytes` bytes.
+
+    Args:
+        path: the file.
+        max_bytes: largest size, bytes.
+        refused: class of the error that says why the file cannot be read.
+    """
+    try:
+        size = regular_size(path)
+        if size > max_bytes:
+            raise refused(f"{path}: has {size} bytes; should have at most {max_bytes}")
+        with path.open("rb") as file:
+            return file.read(max_bytes)
+    except OSError as error:
+        raise refused(f"{path}: cannot be read ({error.strerror})") from None
+
+
 def text_of(path: Path, max_bytes: int, refused: type[RadharError]) -> str:
     """Read the text of a file that a user named (`read_text`).
 

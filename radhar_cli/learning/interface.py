@@ -12,26 +12,12 @@ from radhar_cli.learning.images.image_set import check_split_name
 from radhar_cli.learning.machine import choose_device
 from radhar_cli.learning.report import evaluate as evaluate_runs
 from radhar_cli.learning.report import main_scores
-from radhar_cli.learning.run_folder import Epoch
 from radhar_cli.learning.settings import TrainConfig
 from radhar_cli.learning.tasks.predictions import EvalOptions
 from radhar_cli.learning.trained_run import TrainedRun, load_run
-from radhar_cli.processes.progress import NO_PROGRESS, NoProgress, Progress
+from radhar_cli.processes.progress import NO_PROGRESS, Progress
 
 Paths: TypeAlias = str | Path | Sequence[str | Path]
-
-
-class NoTrainingProgress(NoProgress):
-    """Progress of a training run that nobody watches."""
-
-    def epoch(self, number: int, epochs: int, steps: int) -> None:
-        """Nobody sees it."""
-
-    def step(self, loss: float, accuracy: float) -> None:
-        """Nobody sees it."""
-
-    def epoch_done(self, row: Epoch, best: bool) -> None:
-        """Nobody sees it."""
 
 
 @dataclass(frozen=True)
@@ -77,7 +63,7 @@ def train(
         source = Path(settings) if isinstance(settings, str) else settings
         settings = load_section(TrainConfig, source)
     options = training.TrainOptions(start=Path(init) if init else None, overwrite=overwrite)
-    watched = progress or NoTrainingProgress()
+    watched = progress or training.NoTrainingProgress()
     training.train(settings, _paths(data), Path(folder), watched, options)
     return load_run(folder)
 

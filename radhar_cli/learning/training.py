@@ -31,7 +31,7 @@ from radhar_cli.learning.tasks.task import create_task
 from radhar_cli.learning.training_set import describe_run, open_training_set, training_warnings
 from radhar_cli.numerics.arrays import Index
 from radhar_cli.numerics.randomness import TRAINING, stream
-from radhar_cli.processes.progress import Messages
+from radhar_cli.processes.progress import Messages, NoProgress
 from radhar_cli.processes.worker_process import keep_memory
 
 STATISTICS_IMAGES = 2048  # from which batch norm of averaged weights has its statistics
@@ -52,6 +52,19 @@ class TrainingProgress(Messages, Protocol):
 
     def epoch_done(self, row: Epoch, best: bool) -> None:
         """Finish an epoch, which is on disk; `best` where its weights are the best so far."""
+
+
+class NoTrainingProgress(NoProgress):
+    """Progress of a training run that nobody watches."""
+
+    def epoch(self, number: int, epochs: int, steps: int) -> None:
+        """Nobody sees it."""
+
+    def step(self, loss: float, accuracy: float) -> None:
+        """Nobody sees it."""
+
+    def epoch_done(self, row: Epoch, best: bool) -> None:
+        """Nobody sees it."""
 
 
 @dataclass(frozen=True)

@@ -1,4 +1,4 @@
-"""Timing of the frames of a radar: chirps, frames and samples, whichever file says them."""
+"""Timing of the frames of a radar: chirps, frames and samples, whichever file states them."""
 
 from dataclasses import dataclass
 from enum import IntEnum
@@ -18,8 +18,8 @@ class Sampling(IntEnum):
 class FrameTiming:
     """Chirps and frames that a radar sends, and the samples that it takes of them.
 
-    Configs, the files of boards and captures state these in their own words; nothing behind their
-    readers asks for anything else.
+    Configs, files of boards and captures state these in their own words; their readers make this of
+    them, and all other code uses only this.
 
     Attributes:
         start_hz: Frequency at which a ramp starts.

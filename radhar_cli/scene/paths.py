@@ -208,7 +208,8 @@ def make_body_paths(
     if config.body.scatterers == "surfaces":
         rng = person.stream(f"surface/{number}")
         surface = draw_surface(len(body.segments), min(largest_count, POINTS), rng)
-        surface = surface._replace(weight=surface.weight * fields[surface.segment])
+        if fields is not None:
+            surface = surface._replace(weight=surface.weight * fields[surface.segment])
         return SurfacePaths(body, surface, antennas, waveform.fc, wall, numbers)
     duration, prf = waveform.duration, waveform.prf
     window = config.processing.make_frames(duration, prf, waveform.f0).length / prf
@@ -219,21 +220,25 @@ def make_body_paths(
         _taper(draw_points(count, person.own_stream(f"body/{number}/{segment.name}")))
         for segment, count in zip(body.segments, counts, strict=True)
     )
-    points = tuple(
-        one._replace(share=one.share * field) for one, field in zip(points, fields, strict=True)
-    )
+    if fields is not None:
+        points = tuple(
+            one._replace(share=one.share * field) for one, field in zip(points, fields, strict=True)
+        )
     fast = compiled.pays(sum(counts[s] for s in numbers) * waveform.n_pulses)
     return SegmentPaths(
         body, points, antennas, waveform.fc, wall, config.body.shadowing, numbers, fast
     )
 
 
-def _draw_fields(person: Person, segments: tuple[Segment, ...]) -> Float:
-    """Draw the fields [S] of a person's segments relative to the usual, alike on both sides."""
+def _draw_fields(person: Person, segments: tuple[Segment, ...]) -> Float | None:
+    """Draw the fields [S] of a person's segments relative to the usual; None if all are usual.
+
+    Left and right are alike.
+    """
     sd = person.scene.config.body.cross_section_sd_db
-    kinds = [segment.name.split("_")[-1] for segment in segments]
     if not sd:
-        return np.ones(len(kinds))
+        return None
+    kinds = [segment.name.split("_")[-1] for segment in segments]
     rng = person.own_stream("body/cross_sections")
     level = dict(zip(FACING_DBSM, sd * rng.standard_normal(len(FACING_DBSM)), strict=True))
     return 10 ** (np.array([level[kind] for kind in kinds]) / 20)

@@ -187,6 +187,15 @@ def test_a_config_that_radhar_comes_with_goes_by_its_name(
     assert load_config("room").snr_db == 3  # a file goes before a name
 
 
+def test_a_name_like_that_of_a_config_is_suggested(tmp_path: Path) -> None:
+    (tmp_path / "over.yaml").write_text("base: human/rooom\n")
+    for given in ("human/rom", str(tmp_path / "over.yaml")):
+        done = radhar("config", "show", given)
+        assert done.returncode == 2
+        assert "did you mean 'human/room'?" in done.stderr
+        assert done.stderr.count("\n") == 1
+
+
 @pytest.mark.parametrize("name", ["room.yaml", "quickstart.yaml", "configs/room.yaml", "human/rom"])
 def test_a_file_that_is_missing_is_no_name(
     name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch

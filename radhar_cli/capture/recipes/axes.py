@@ -1,4 +1,4 @@
-"""Which way the columns of a table point: what nobody documents is asked for."""
+"""Directions of the columns of a table, which the user gives where no publisher states them."""
 
 from typing import Literal, TypeAlias
 
@@ -27,12 +27,12 @@ EXAMPLE = "--set axes=[right,ahead,up] --set doppler=receding, as TI's demos sen
 
 
 class AxesSettings(Section):
-    """Which way x, y and z point, and of whom Doppler is positive."""
+    """Directions of x, y and z, and of motion with positive Doppler."""
 
     axes: Axes | None = None
     """Ways of x, y and z: three of ahead, behind, left, right, up, down."""
     doppler: Literal["receding", "approaching"] | None = None
-    """What has positive Doppler."""
+    """Motion whose Doppler is positive."""
 
     @field_validator("axes")
     @classmethod
@@ -54,12 +54,12 @@ class AxesSettings(Section):
             )
 
     def receding(self, doppler: Float) -> Float:
-        """Speeds away from the radar of a column of Doppler."""
+        """Speeds [n] away from the radar, of a column of Doppler, m/s."""
         return doppler if self.doppler == "receding" else -doppler
 
 
-def turned(places: Float, axes: Axes) -> Float:
-    """Places [n, 3] of other axes as radhar has them: ahead, left, up."""
+def to_radhar_axes(places: Float, axes: Axes) -> Float:
+    """Turn places [n, 3] of other axes to radhar's: ahead, left, up."""
     out = np.empty_like(places)
     for column, direction in enumerate(axes):
         axis, sign = WAYS[direction]

@@ -1,4 +1,4 @@
-"""Recordings of points out of what published sets hold: rows of points, frame by frame."""
+"""Recordings of points, made of the rows that published sets hold frame by frame."""
 
 import io
 from collections.abc import Iterable, Iterator, Sequence
@@ -10,7 +10,7 @@ import numpy as np
 from radhar_cli.capture.point_recording import PointRecordingDraft, write_point_recording
 from radhar_cli.capture.recording import Label, SourceNote
 from radhar_cli.errors import CaptureError
-from radhar_cli.files.untrusted import regular_size
+from radhar_cli.files.untrusted import bytes_of
 from radhar_cli.numerics.arrays import Float, Index
 from radhar_cli.processing.points import COLUMNS
 from radhar_cli.readers.points.point_frames import (
@@ -27,11 +27,11 @@ LONGEST_CLIP = 100_000  # frames
 
 @dataclass(frozen=True)
 class CloudClip:
-    """Frames of somebody who does one thing.
+    """Frames of one person and one activity.
 
     Attributes:
-        label: What they do.
-        person: Who it is; None where nobody says it.
+        label: Name of the activity.
+        person: Name of the person; None if it is not known.
         points: Points [n, 8] of all frames, columns as COLUMNS.
         frame: Frame of each point [n], from 0, in order.
         length: Number of frames, those among them that are empty or lost.
@@ -115,7 +115,7 @@ def points_of(
     intensity: Float | None = None,
     snr_db: Float | None = None,
 ) -> Float:
-    """Points [n, 8] of COLUMNS; NaN is what nobody says.
+    """Points [n, 8] of COLUMNS; NaN in those that the set does not have.
 
     Args:
         places: Places [n, 3] ahead, left and up of the radar, m.
@@ -137,21 +137,6 @@ def points_of_ti(rows: Float) -> Float:
     return points_of(in_radhar_axes(rows[:, :3]), rows[:, 3], rows[:, 4])
 
 
-def read_bounded(path: Path) -> bytes:
-    """Read a regular file of at most MAX_TABLE bytes.
-
-    Raises:
-        CaptureError: it is larger, or cannot be read.
-    """
-    try:
-        size = regular_size(path)
-        if size > MAX_TABLE:
-            raise CaptureError(f"{path}: has {size} bytes; should have at most {MAX_TABLE}")
-        return path.read_bytes()
-    except OSError as error:
-        raise CaptureError(f"{path}: cannot be read ({error.strerror})") from None
-
-
 def read_table(path: Path, columns: int) -> tuple[Float, int]:
     """Read the rows [n, columns] of a CSV file with one line of names.
 
@@ -163,7 +148,7 @@ def read_table(path: Path, columns: int) -> tuple[Float, int]:
     Raises:
         CaptureError: a line does not have as many numbers.
     """
-    text = read_bounded(path)
+    text = bytes_of(path, MAX_TABLE, CaptureError)
     lines, _, cut = text.rpartition(b"\n")
     if cut.strip() and cut.count(b",") + 1 >= columns:  # a last line without an end of line
         lines, cut = text, b""

@@ -16,7 +16,7 @@ from radhar_cli.capture.recipes.clouds import CloudClip, points_of_ti, read_tabl
 from radhar_cli.capture.recipes.recipe import (
     BY_PERSON,
     CLOUDS,
-    Found,
+    MatchedFile,
     NoSettings,
     SetRecipe,
     Take,
@@ -38,7 +38,7 @@ def list_takes(folder: Path, settings: NoSettings) -> Iterator[Take]:
         yield Take(as_name(f"{distance}_{person}"), tuple(sources), write)
 
 
-def _person(file: Found) -> tuple[str, str]:
+def _person(file: MatchedFile) -> tuple[str, str]:
     """Person and distance of a file."""
     return file.match[1], file.match[2].lower()
 
@@ -64,7 +64,7 @@ def write_take(sources: dict[Path, str], person: str, out: Path) -> None:
             _repetition(gesture, person, rows[part], frame[part])
             for part in np.split(np.arange(len(rows)), cuts)
         ]
-    write_clips(out, _joined(clips), FRAME_S, [*sources], findings)
+    write_clips(out, _join_repetitions(clips), FRAME_S, [*sources], findings)
 
 
 def _repetition(gesture: str, person: str, rows: np.ndarray, frame: np.ndarray) -> CloudClip:
@@ -74,7 +74,7 @@ def _repetition(gesture: str, person: str, rows: np.ndarray, frame: np.ndarray) 
     return CloudClip(gesture, person, points_of_ti(rows[:, 2:7]), frame - frame[0], length)
 
 
-def _joined(clips: Sequence[CloudClip]) -> list[CloudClip]:
+def _join_repetitions(clips: Sequence[CloudClip]) -> list[CloudClip]:
     """Join repetitions of a gesture into one clip."""
     joined = []
     for _, group in groupby(clips, key=lambda clip: clip.label):

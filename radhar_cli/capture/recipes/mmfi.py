@@ -12,10 +12,18 @@ from pathlib import Path
 
 import numpy as np
 
-from radhar_cli.capture.recipes.axes import AxesSettings, turned
-from radhar_cli.capture.recipes.clouds import CloudClip, points_of, read_bounded, write_clips
-from radhar_cli.capture.recipes.recipe import BY_PERSON, CLOUDS, Found, SetRecipe, Take, find_files
+from radhar_cli.capture.recipes.axes import AxesSettings, to_radhar_axes
+from radhar_cli.capture.recipes.clouds import MAX_TABLE, CloudClip, points_of, write_clips
+from radhar_cli.capture.recipes.recipe import (
+    BY_PERSON,
+    CLOUDS,
+    MatchedFile,
+    SetRecipe,
+    Take,
+    find_files,
+)
 from radhar_cli.errors import CaptureError
+from radhar_cli.files.untrusted import bytes_of
 from radhar_cli.numerics.arrays import Float
 
 FRAME_S, FRAMES = 0.1, 297
@@ -46,7 +54,7 @@ def list_takes(folder: Path, settings: AxesSettings) -> Iterator[Take]:
         yield Take(name, tuple(sources.values()), write)
 
 
-def _sequence(file: Found) -> tuple[int, int, int]:
+def _sequence(file: MatchedFile) -> tuple[int, int, int]:
     """Room, person and action of a frame."""
     return int(file.match[1]), int(file.match[2]), int(file.match[3])
 
@@ -67,7 +75,10 @@ def write_take(
     frame = np.repeat(received, [len(rows) for rows in frames])
     rows = np.concatenate(frames)
     assert settings.axes is not None  # as `list_takes` found
-    places, receding = turned(rows[:, :3], settings.axes), settings.receding(rows[:, 3])
+    places, receding = (
+        to_radhar_axes(rows[:, :3], settings.axes),
+        settings.receding(rows[:, 3]),
+    )
     points = points_of(places, receding, rows[:, 4])
     missing = FRAMES - len(numbers)
     findings = [f"{missing} of {FRAMES} frames have no file"] * (missing > 0)
@@ -78,7 +89,7 @@ def write_take(
 
 def _read_frame(path: Path) -> Float:
     """Rows [n, 5] of a frame."""
-    data = read_bounded(path)
+    data = bytes_of(path, MAX_TABLE, CaptureError)
     if len(data) % (8 * ROW):
         raise CaptureError(f"{path}: has {len(data)} bytes; should be rows of five float64")
     return np.frombuffer(data, "<f8").reshape(-1, ROW)

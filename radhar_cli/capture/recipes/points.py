@@ -22,11 +22,12 @@ from radhar_cli.capture.importing_points import (
     import_points,
     is_point_capture,
 )
-from radhar_cli.capture.recipes.axes import AxesSettings, turned
-from radhar_cli.capture.recipes.clouds import CloudClip, points_of, read_bounded, write_clips
+from radhar_cli.capture.recipes.axes import AxesSettings, to_radhar_axes
+from radhar_cli.capture.recipes.clouds import MAX_TABLE, CloudClip, points_of, write_clips
 from radhar_cli.capture.recipes.recipe import CLOUDS, SetRecipe, Take, as_name, find_files
 from radhar_cli.errors import CaptureError
 from radhar_cli.files.plain_text import decode_text
+from radhar_cli.files.untrusted import bytes_of
 from radhar_cli.motion.activities.vocabulary import plain_word
 from radhar_cli.numerics.arrays import Float
 from radhar_cli.readers.captures.settings import Above, Text
@@ -48,7 +49,7 @@ NEEDED = ("frame", "x", "y", "z", "doppler")
 
 
 class PointTableSettings(AxesSettings):
-    """What tables of points do not say themselves."""
+    """Facts that tables of points do not state themselves."""
 
     frame_s: Annotated[Above, Field(ge=1e-5, le=1e6)] | None = None
     """Time from frame to frame, s."""
@@ -128,7 +129,7 @@ def write_take(path: Path, label: str | None, settings: PointTableSettings, out:
     assert settings.axes is not None  # as `list_takes` found
     assert settings.frame_s is not None
     points = points_of(
-        turned(places, settings.axes), receding, more.get("intensity"), more.get("snr")
+        to_radhar_axes(places, settings.axes), receding, more.get("intensity"), more.get("snr")
     )
     labels = cells.get("label") or [_require_label(path, label)] * len(numbers)
     persons = cells.get("person") or [settings.person or ""] * len(numbers)
@@ -153,7 +154,7 @@ def _read_columns(path: Path, renamed: Mapping[str, str]) -> dict[str, list[str]
         CaptureError: a column that is needed has no plain name.
     """
     try:
-        text = decode_text(read_bounded(path))
+        text = decode_text(bytes_of(path, MAX_TABLE, CaptureError))
     except ValueError as error:
         raise CaptureError(f"{path}: {error}") from None
     heading = text.partition("\n")[0]
@@ -203,11 +204,20 @@ def _match_names(path: Path, names: Sequence[str], renamed: Mapping[str, str]) -
 
 
 def _numbers(path: Path, name: str, cells: Sequence[str]) -> Float:
-    """Numbers [n] of the cells of a column; NaN of empty ones."""
-    try:
-        return np.array([cell or "nan" for cell in cells], dtype=np.float64)
-    except ValueError as error:
-        raise CaptureError(f"{path}: {name}: {error}") from None
+    """Numbers [n] of the cells of a column; NaN of empty ones.
+
+    Raises:
+        CaptureError: a cell is no number; names the row, that of names being row 1.
+    """
+    numbers = np.full(len(cells), np.nan)
+    for place, cell in enumerate(cells):
+        try:
+            numbers[place] = float(cell or "nan")
+        except ValueError:
+            raise CaptureError(
+                f"{path}: row {place + 2}: {name} = {cell[:80]!r}: should be a number"
+            ) from None
+    return numbers
 
 
 RECIPE = SetRecipe(

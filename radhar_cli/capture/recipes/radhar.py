@@ -12,7 +12,7 @@ from pathlib import Path
 
 import numpy as np
 
-from radhar_cli.capture.recipes.clouds import CloudClip, points_of, read_bounded, write_clips
+from radhar_cli.capture.recipes.clouds import MAX_TABLE, CloudClip, points_of, write_clips
 from radhar_cli.capture.recipes.recipe import (
     CLOUDS,
     NoSettings,
@@ -22,6 +22,7 @@ from radhar_cli.capture.recipes.recipe import (
     find_files,
 )
 from radhar_cli.errors import CaptureError
+from radhar_cli.files.untrusted import bytes_of
 from radhar_cli.numerics.arrays import Float, Index
 
 FRAME_S = 1 / 30
@@ -53,7 +54,7 @@ def write_take(path: Path, label: str, out: Path) -> None:
     Raises:
         CaptureError: it holds no message.
     """
-    text = read_bounded(path)
+    text = bytes_of(path, MAX_TABLE, CaptureError)
     rows = np.array(_MESSAGE.findall(text + b"\n"), dtype=np.float64).reshape(-1, 2 + len(KEYS))
     if not len(rows):
         raise CaptureError(f"{path}: holds no message with {', '.join(KEYS)}")
@@ -71,7 +72,7 @@ def _number_frames(rows: Float) -> Index:
     begins = np.concatenate([[True], np.diff(rows[:, 2]) <= 0])
     times = (rows[begins, 0] - rows[0, 0]) + 1e-9 * (rows[begins, 1] - rows[0, 1])
     by_clock = np.round(times / FRAME_S).astype(np.int64)
-    # Of each pair the second comes at once: it is the next frame, whatever its clock says.
+    # Messages come in pairs: the second one is the next frame, whatever its clock says.
     place = np.arange(len(by_clock))
     numbers: Index = (place + np.maximum.accumulate(by_clock - place)).astype(np.intp)
     of_rows: Index = numbers[np.cumsum(begins) - 1]

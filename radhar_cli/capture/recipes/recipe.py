@@ -1,4 +1,4 @@
-"""What a recipe is: takes by the names of files, and what there is to say of a published set."""
+"""Recipe of a published set: its takes, found by the names of files, and facts about the set."""
 
 import os
 import re
@@ -26,7 +26,7 @@ class Take(NamedTuple):
         name: Its own name, with folders, `campaign/1P36A01R01`.
         sources: Files that it is made of.
         write: Writes it under a path, with its labels and persons; a function that can be pickled.
-        split: train, validation or test, where the authors say it.
+        split: train, validation or test, if the authors state it.
     """
 
     name: str
@@ -43,12 +43,12 @@ class SetRecipe:
         source: Who published it, and where.
         licence: As the Hugging Face Hub calls it; "" where none is stated.
         holds: Size, classes and persons, in words.
-        tested: What the recipe was tried on, in words.
+        tested: Data that the recipe was tried on, in words.
         layout: Files that should lie in the folder, as a message shows them.
         list_takes: Lists the takes of a folder by its settings; or returns a manifest that
             `radhar generate --recordings` takes as it stands.
         config: Keys of the config of its data set that differ from the defaults.
-        settings: What has to be asked for, by `--set`.
+        settings: Keys that the user has to give, by `--set`.
         count: Number of takes of the whole set; None where it is not known.
     """
 
@@ -71,7 +71,7 @@ CLOUDS: dict[str, Any] = {
 }
 
 
-class Found(NamedTuple):
+class MatchedFile(NamedTuple):
     """A file of a folder, and what its path matched."""
 
     path: Path
@@ -79,7 +79,7 @@ class Found(NamedTuple):
     match: re.Match[str]
 
 
-def find_files(folder: Path, pattern: str) -> Iterator[Found]:
+def find_files(folder: Path, pattern: str) -> Iterator[MatchedFile]:
     """Yield the files below a folder whose paths from there on end in a pattern, in their order.
 
     Case does not matter. No link is followed out of the folder.
@@ -104,7 +104,7 @@ def find_files(folder: Path, pattern: str) -> Iterator[Found]:
     for inner in sorted(inner_paths):
         if match := expression.fullmatch(inner):
             refuse_outside(folder / inner, folder)
-            yield Found(folder / inner, inner, match)
+            yield MatchedFile(folder / inner, inner, match)
 
 
 def as_name(text: str) -> str:

@@ -12,9 +12,9 @@ from pathlib import Path
 
 import numpy as np
 
-from radhar_cli.capture.recipes.axes import OF_ROS, OF_TI, Axes, AxesSettings, turned
+from radhar_cli.capture.recipes.axes import OF_ROS, OF_TI, Axes, AxesSettings, to_radhar_axes
 from radhar_cli.capture.recipes.clouds import MAX_TABLE, CloudClip, points_of, write_clips
-from radhar_cli.capture.recipes.recipe import CLOUDS, Found, SetRecipe, Take, find_files
+from radhar_cli.capture.recipes.recipe import CLOUDS, MatchedFile, SetRecipe, Take, find_files
 from radhar_cli.errors import CaptureError
 from radhar_cli.numerics.arrays import Float
 from radhar_cli.readers.captures.array_files import read_npz_array
@@ -59,12 +59,12 @@ def list_takes(folder: Path, settings: AxesSettings) -> Iterator[Take]:
         yield Take(name, tuple(sources), write, split or None)
 
 
-def _folders(file: Found) -> list[str]:
+def _folders(file: MatchedFile) -> list[str]:
     """Folders of a file, in lower case."""
     return file.inner.lower().split("/")[:-1]
 
 
-def _group(file: Found) -> tuple[str, int, str]:
+def _group(file: MatchedFile) -> tuple[str, int, str]:
     """Part of the split, set of origin and person of a clip."""
     split = next((part for part in _folders(file) if part in ("train", "test")), "")
     return split, int(file.match[1]), file.match[3] or ""
@@ -93,7 +93,7 @@ def write_take(
             for number, rows in enumerate(clip):
                 rows = np.unique(rows[rows.any(axis=1)], axis=0)
                 doppler = rows[:, 3] if known else settings.receding(rows[:, 3])
-                points.append(points_of(turned(rows[:, :3], axes), doppler, rows[:, 4]))
+                points.append(points_of(to_radhar_axes(rows[:, :3], axes), doppler, rows[:, 4]))
                 frames.append(np.full(len(rows), length + number))
             length += len(clip)
         frame = np.concatenate(frames).astype(np.intp)

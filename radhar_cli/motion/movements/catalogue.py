@@ -25,7 +25,7 @@ TIMING_ORDER = (
 )
 
 
-def _ordered(names: Iterable[str], order: tuple[str, ...]) -> list[str]:
+def _sort_as(names: Iterable[str], order: tuple[str, ...]) -> list[str]:
     """Sort names as in an order; those that it lacks follow by name."""
     return sorted(
         sorted(names), key=lambda name: order.index(name) if name in order else len(order)
@@ -34,7 +34,7 @@ def _ordered(names: Iterable[str], order: tuple[str, ...]) -> list[str]:
 
 def _modules() -> list[ModuleType]:
     """Modules of the package in ORDER."""
-    names = _ordered((info.name for info in iter_modules(movements.__path__)), ORDER)
+    names = _sort_as((info.name for info in iter_modules(movements.__path__)), ORDER)
     return [import_module(f"{movements.__name__}.{name}") for name in names if name != "catalogue"]
 
 
@@ -51,7 +51,7 @@ SECTIONS: dict[str, type[Section]] = {
 # Sections whose keys are keys of `timing`, these as a section has them, and their defaults.
 TIMINGS: list[type[Section]] = [one.TIMING for one in _MODULES if hasattr(one, "TIMING")]
 _KEYS = {name: one for one in TIMINGS for name in one.model_fields}
-TIMING_KEYS = {name: _KEYS[name].__annotations__[name] for name in _ordered(_KEYS, TIMING_ORDER)}
+TIMING_KEYS = {name: _KEYS[name].__annotations__[name] for name in _sort_as(_KEYS, TIMING_ORDER)}
 TIMING_DEFAULTS = {name: _KEYS[name].model_fields[name].default for name in TIMING_KEYS}
 MOVEMENTS: dict[str, MovementKind] = {
     kind.name: kind for module in _MODULES for kind in getattr(module, "MOVEMENTS", ())

@@ -12,7 +12,7 @@ from pathlib import Path
 import numpy as np
 
 from radhar_cli.errors import CaptureError
-from radhar_cli.files.untrusted import regular_size
+from radhar_cli.files.untrusted import bytes_of
 from radhar_cli.numerics.arrays import Complex
 from radhar_cli.readers.captures.array_axes import as_source
 from radhar_cli.readers.captures.source import CaptureFiles, CaptureFormat, Source
@@ -42,10 +42,7 @@ def _open_glasgow(capture: CaptureFiles) -> Source:
         CaptureError: the file is too large, or is not numbers throughout.
     """
     path = capture.paths[0]
-    size = regular_size(path)
-    if size > MAX_BYTES:
-        raise CaptureError(f"{path}: has {size} bytes; should have at most {MAX_BYTES}")
-    text = path.read_bytes()
+    text = bytes_of(path, MAX_BYTES, CaptureError)
     header = _HEADER.match(text)
     assert header is not None  # as `_is_of_glasgow` found
     carrier, sweep_ms, count, bandwidth = map(float, header.groups())

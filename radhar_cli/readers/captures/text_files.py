@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 from radhar_cli.errors import CaptureError
 from radhar_cli.files import plain_text
 from radhar_cli.files.clocks import TIME_WORDS, seconds_of_texts
-from radhar_cli.files.untrusted import regular_size
+from radhar_cli.files.untrusted import bytes_of, regular_size
 from radhar_cli.numerics.arrays import Complex, Float
 from radhar_cli.readers.captures.array_axes import as_source, settings_with_frames
 from radhar_cli.readers.captures.named_arrays import choose_arrays
@@ -94,11 +94,8 @@ def read_capture_lines(path: Path) -> list[str]:
     Raises:
         CaptureError: it is too large, or no text.
     """
-    if regular_size(path) > MAX_TEXT:
-        raise CaptureError(
-            f"{path}: has {regular_size(path)} bytes; should have at most {MAX_TEXT}"
-        )
-    lines = text_of_bytes(path.read_bytes(), str(path), MAX_TEXT, capture_error).splitlines()
+    data = bytes_of(path, MAX_TEXT, CaptureError)
+    lines = text_of_bytes(data, str(path), MAX_TEXT, capture_error).splitlines()
     if _COMPLEX.search(_last_line(lines)):
         return [_COMPLEX.sub(_plain_complex, line) for line in lines]
     return lines
@@ -198,7 +195,7 @@ def _find_heading(table: TextTable) -> tuple[int, list[str]]:
     first, names = 0, list[str]()  # row below the line that may have the names
     for number, line in enumerate(islice(table.lines, MAX_PREAMBLE)):
         is_remark = is_comment(line)
-        row = _filled(next(iter(table.cells([line.lstrip("#%/ ") if is_remark else line])), []))
+        row = _trim_row(next(iter(table.cells([line.lstrip("#%/ ") if is_remark else line])), []))
         if not is_remark and len(row) == count and _is_numeric(row):
             begin = number
             break
@@ -218,10 +215,10 @@ def _find_heading(table: TextTable) -> tuple[int, list[str]]:
 def _usual_width(table: TextTable) -> int:
     """Number of cells of most of the last lines, of which one may be cut off."""
     filled = (line for line in reversed(table.lines) if line.strip() and not is_comment(line))
-    return mode(len(_filled(row)) for row in table.cells(islice(filled, SAMPLED)))
+    return mode(len(_trim_row(row)) for row in table.cells(islice(filled, SAMPLED)))
 
 
-def _filled(row: Sequence[str]) -> list[str]:
+def _trim_row(row: Sequence[str]) -> list[str]:
     """Cells of a row without the empty ones at its end."""
     cells = [*row]
     while cells and not cells[-1].strip():

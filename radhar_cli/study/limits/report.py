@@ -109,13 +109,13 @@ def terminal_lines(study: LimitsStudy) -> Iterator[str]:
 def unfinished_lines(study: LimitsStudy) -> Iterator[str]:
     """Yield lines that name what there was no time for."""
     if study.unfinished:
-        yield f"not finished: {_listed(study.unfinished)} (--minutes, --key)"
+        yield f"not finished: {_name_keys(study.unfinished)} (--minutes, --key)"
     if study.not_simulated:
-        keys = _listed(study.not_simulated)
+        keys = _name_keys(study.not_simulated)
         yield f"no sample was simulated at a limit of {keys} (--minutes, --key)"
 
 
-def _listed(places: Iterable[tuple[str, RangeSide]]) -> str:
+def _name_keys(places: Iterable[tuple[str, RangeSide]]) -> str:
     """Keys in a sentence, the first of many."""
     keys = [*dict.fromkeys(key for key, _ in places)]
     names, more = ", ".join(keys[:MOST_LISTED]), len(keys) - MOST_LISTED

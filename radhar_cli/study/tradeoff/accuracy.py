@@ -34,11 +34,11 @@ from radhar_cli.learning import run_files
 from radhar_cli.learning.evaluation import open_for_model, predict_classes
 from radhar_cli.learning.images.scan import content_hash
 from radhar_cli.learning.machine import choose_device
-from radhar_cli.learning.run_folder import Epoch, load_best
+from radhar_cli.learning.run_folder import load_best
 from radhar_cli.learning.settings import TrainConfig
-from radhar_cli.learning.training import train
+from radhar_cli.learning.training import NoTrainingProgress, train
 from radhar_cli.learning.training_set import open_training_set
-from radhar_cli.processes.progress import NoProgress, Progress
+from radhar_cli.processes.progress import Progress
 from radhar_cli.study.tradeoff.samples import Scenes
 from radhar_cli.study.tradeoff.settings import DEFAULT, Overrides
 from radhar_cli.study.tradeoff.sweep import AccuracyNumbers, Interval, Sweep
@@ -66,7 +66,7 @@ class SeedAccuracy:
     on_own: Annotated[float, Field(ge=0, le=1)]  # on images of the setting
 
 
-class _Quiet(NoProgress):
+class _Quiet(NoTrainingProgress):
     """Progress of a part: silent, but its work can be interrupted."""
 
     def __init__(self, progress: Progress) -> None:
@@ -76,15 +76,9 @@ class _Quiet(NoProgress):
         """Give the user's interrupt its turn."""
         self._progress.advance(0)
 
-    def epoch(self, number: int, epochs: int, steps: int) -> None:
-        """Nobody sees it."""
-
     def step(self, loss: float, accuracy: float) -> None:
         """Give the user's interrupt its turn."""
         self._progress.advance(0)
-
-    def epoch_done(self, row: Epoch, best: bool) -> None:
-        """Nobody sees it."""
 
 
 @dataclass(frozen=True)

@@ -359,3 +359,14 @@ def test_another_set_is_a_file_and_a_line(tmp_path: Path) -> None:
     with open_dataset(tmp_path / "set") as data:
         assert set(data.classes) == {"walking", "falling"}
         assert len(data) == 4
+
+
+def test_a_cell_that_is_no_number_is_named_with_its_row(tmp_path: Path) -> None:
+    (tmp_path / "p.csv").write_text(
+        "frame,x,y,z,doppler,label\n1,0,2,0,1,walking\n2,a,2,0,1,walking\n"
+    )
+    keys = ("axes=[right,ahead,up]", "doppler=receding", "frame_s=0.1")
+    sets = [word for key in keys for word in ("--set", key)]
+    done = radhar("prepare", "points", tmp_path, "-o", tmp_path / "set", *sets)
+    assert done.returncode == 2
+    assert f"{tmp_path / 'p.csv'}: row 3: x = 'a': should be a number" in done.stderr

@@ -8,8 +8,10 @@ from typing import Any
 import pytest
 
 from radhar_cli.config import Config, load_config
+from radhar_cli.config.engine import EngineConfig
 from radhar_cli.config.request import Request
 from radhar_cli.dataset.layout import Rows
+from radhar_cli.echo.accuracy import LOOSEST_DB
 from radhar_cli.numerics.constants import SPEED_OF_LIGHT
 from radhar_cli.scene.checks.drawing import draw_valid_scene
 from radhar_cli.scene.checks.flags import Flags
@@ -146,3 +148,7 @@ def test_defaults_that_are_not_validated_are_what_validation_gives() -> None:
         assert defaults_of(kind).model_dump_json() == kind().model_dump_json(), kind
         compared += 1
     assert compared > 30
+
+
+def test_the_default_tolerance_is_the_loosest_that_engines_run() -> None:
+    assert EngineConfig().tolerance_db == LOOSEST_DB

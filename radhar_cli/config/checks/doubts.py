@@ -2,9 +2,9 @@
 
 from collections.abc import Iterable, Iterator
 
+from radhar_cli.config.engine import EngineConfig
 from radhar_cli.config.radar import ImpulseRadar
 from radhar_cli.config.request import Request
-from radhar_cli.echo.accuracy import LOOSEST_DB
 from radhar_cli.motion.activities.activity import Activity
 from radhar_cli.motion.movements.standing import NOBODY
 from radhar_cli.schema.number import nominal, support
@@ -53,12 +53,12 @@ def tone_warnings(c: Request) -> list[str]:
 
 def tolerance_warnings(c: Request) -> Iterator[str]:
     """Say that a tolerance looser than the default runs as the default."""
-    tolerance_db = c.engine.tolerance_db
+    tolerance_db, usual_db = c.engine.tolerance_db, EngineConfig().tolerance_db
     computed = c.engine.kind == "direct" and not isinstance(c.radar, ImpulseRadar)
-    if computed and tolerance_db > LOOSEST_DB:
+    if computed and tolerance_db > usual_db:
         yield (
             f"engine.tolerance_db: {tolerance_db:g} is looser than the default and runs as "
-            f"{LOOSEST_DB:g}: a larger error would save less than a tenth of a sample's time"
+            f"{usual_db:g}: a larger error would save less than a tenth of a sample's time"
         )
 
 

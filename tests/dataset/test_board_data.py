@@ -79,9 +79,16 @@ def test_it_is_verified_and_its_bytes_do_not_depend_on_the_workers(
     assert (folder / "again/dataset.h5").read_bytes() == (data / "dataset.h5").read_bytes()
 
 
-def test_a_recording_gives_the_frames_of_its_scene(folder: Path) -> None:
-    config, scene, made = folder / "config.yaml", folder / "scene", folder / "made"
-    done("simulate", config, "--activity", "punching", "-o", scene, "--raw", "-q")
+@pytest.fixture(scope="module")
+def scene(folder: Path) -> Path:
+    """A simulated scene with its raw recording."""
+    out = folder / "scene"
+    done("simulate", folder / "config.yaml", "--activity", "punching", "-o", out, "--raw", "-q")
+    return out
+
+
+def test_a_recording_gives_the_frames_of_its_scene(folder: Path, scene: Path) -> None:
+    config, made = folder / "config.yaml", folder / "made"
     names = "stft,rtm,cube,range_doppler,range_azimuth,points"
     done("process", scene / "recording.h5", "--config", config, "-o", made, "--maps", names, "-q")
     with h5py.File(scene / "scene.h5") as one, h5py.File(made / "maps.h5") as other:
@@ -96,12 +103,10 @@ def test_a_recording_gives_the_frames_of_its_scene(folder: Path) -> None:
     assert (made / "frames.png").stat().st_size > 1000
 
 
-def test_a_recording_of_another_board_is_refused(folder: Path) -> None:
-    config, scene = folder / "config.yaml", folder / "scene"
-    if not scene.exists():
-        done("simulate", config, "--activity", "punching", "-o", scene, "--raw", "-q")
-    (folder / "other.cfg").write_text(CFG.replace("1 80 2499", "1 64 2499"))
-    options = ("--set", f"radar.cfg={folder / 'other.cfg'}", "--maps", "points", "-q")
+def test_a_recording_of_another_board_is_refused(folder: Path, scene: Path) -> None:
+    other, config = folder / "other.cfg", folder / "config.yaml"
+    other.write_text(CFG.replace("1 80 2499", "1 64 2499"))
+    options = ("--set", f"radar.cfg={other}", "--maps", "points", "-q")
     made = radhar(
         "process", scene / "recording.h5", "--config", config, "-o", folder / "x", *options
     )

@@ -87,14 +87,15 @@ def test_a_config_that_is_refused_is_refused_as_ever(small: Path) -> None:
     "command", [["limits"], ["tradeoff", "-o", "out"], ["generate", "-o", "out"]], ids=" ".join
 )
 def test_a_mistake_in_a_config_is_named_with_its_file_and_line(
-    command: list[str], small: Path
+    command: list[str], tmp_path: Path
 ) -> None:
     name, *options = command
-    small.write_text(small.read_text().replace("snr_db: 20", "snr_db: loud"))
-    options = [str(small.parent / word) if word == "out" else word for word in options]
-    done = radhar(name, small, *options)
+    wrong = tmp_path / "wrong.yaml"
+    wrong.write_text(SMALL.replace("snr_db: 20", "snr_db: loud"))
+    options = [str(tmp_path / word) if word == "out" else word for word in options]
+    done = radhar(name, wrong, *options)
     assert done.returncode == 2
-    assert f'{small}:7: snr_db = "loud": should be ' in done.stderr
+    assert f'{wrong}:7: snr_db = "loud": should be ' in done.stderr
 
 
 @pytest.mark.parametrize("name", [*FAST, *slow((one,) for one in CONFIGS if one not in FAST)])

@@ -40,7 +40,7 @@ from radhar_cli.processes.worker_process import prepare_process
 from radhar_cli.processing.canceller import Fir
 from radhar_cli.processing.look import Look, RangeBins
 from radhar_cli.processing.signal import Signal, shown_pulses
-from radhar_cli.radar.waveform import Waveform
+from radhar_cli.radar.fmcw import Waveform
 from radhar_cli.scene.products.plan import Plan, Product, plan
 from radhar_cli.scene.products.run import record, run
 from radhar_cli.scene.products.signal import signal_of_look
@@ -383,7 +383,7 @@ from time import thread_time
 import numpy as np
 from radhar_cli.echo.direct import DirectEcho
 from radhar_cli.echo.paths import Paths
-from radhar_cli.radar.waveform import Waveform
+from radhar_cli.radar.fmcw import Waveform
 from radhar_cli.processes.worker_process import prepare_process
 
 class Walker:

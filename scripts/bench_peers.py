@@ -40,7 +40,7 @@ from radhar_cli.motion.activities.activity import ACTIVITIES
 from radhar_cli.numerics.arrays import Complex, Float
 from radhar_cli.numerics.constants import SPEED_OF_LIGHT
 from radhar_cli.processes.worker_process import prepare_process
-from radhar_cli.radar.waveform import Waveform
+from radhar_cli.radar.fmcw import Waveform
 from radhar_cli.scene.products.run import record
 from radhar_cli.scene.scene import Scene, draw_scene
 

@@ -17,7 +17,7 @@ from radhar_cli.config.data_set import Config
 from radhar_cli.numerics.arrays import Float
 from radhar_cli.processing.image import decibels
 from radhar_cli.processing.power_map import PowerMap
-from radhar_cli.radar.waveform import SPEED_OF_LIGHT
+from radhar_cli.radar.fmcw import SPEED_OF_LIGHT
 from radhar_cli.scene.single.simulate import Simulation, simulate
 
 ROOT = Path(__file__).resolve().parents[1]

@@ -19,9 +19,9 @@ from matplotlib.axes import Axes
 from radhar_cli.config import Config
 from radhar_cli.motion.activities.activity import activity_named
 from radhar_cli.processing.power_map import PowerMap
+from radhar_cli.radar.fmcw import SPEED_OF_LIGHT
 from radhar_cli.radar.layers import Layer, Layers
 from radhar_cli.radar.propagation import leg
-from radhar_cli.radar.waveform import SPEED_OF_LIGHT
 from radhar_cli.scene.motion import motion_of
 from radhar_cli.scene.products.run import record
 from radhar_cli.scene.radar import antennas_of

@@ -26,8 +26,8 @@ from radhar_cli.processing.power_map import PowerMap
 from radhar_cli.processing.signal import Signal, nearest
 from radhar_cli.processing.track import StandingTrack
 from radhar_cli.radar.board import Board
+from radhar_cli.radar.fmcw import Waveform
 from radhar_cli.radar.pulse_times import PulseTimes
-from radhar_cli.radar.waveform import Waveform
 from radhar_cli.scene.products.run import process
 from radhar_cli.scene.radar import board_of
 from radhar_cli.scene.scene import fixed_radar

@@ -6,9 +6,9 @@ from typing import Any, ClassVar, Self, TypeAlias
 from radhar_cli.config.radar import class_of_radar
 from radhar_cli.numerics.arrays import Complex
 from radhar_cli.processing.range_compression import range_compression
+from radhar_cli.radar.fmcw import Waveform
 from radhar_cli.radar.frame_timing import FrameTiming
 from radhar_cli.radar.impulse import Impulse, impulse
-from radhar_cli.radar.waveform import Waveform
 
 TOLERANCE = 1e-6  # relative difference of frequencies and times that are the same
 

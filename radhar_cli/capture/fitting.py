@@ -47,9 +47,9 @@ from radhar_cli.errors import CaptureError
 from radhar_cli.figures.page import page, write_figure
 from radhar_cli.numerics.arrays import Bool, Complex, Float, Index
 from radhar_cli.processing.frames import Frames
+from radhar_cli.radar.fmcw import SPEED_OF_LIGHT, Waveform
 from radhar_cli.radar.impulse import Impulse
 from radhar_cli.radar.pulse_times import PulseTimes
-from radhar_cli.radar.waveform import SPEED_OF_LIGHT, Waveform
 
 MIN_SNRS = 3  # SNRs needed to fit a spread
 MIN_S = 0.5  # shortest duration of the longest recording

@@ -26,9 +26,9 @@ from radhar_cli.errors import CaptureError
 from radhar_cli.numerics.arrays import Complex, Float
 from radhar_cli.numerics.constants import SPEED_OF_LIGHT
 from radhar_cli.radar.board import BoardWaveform
+from radhar_cli.radar.fmcw import Waveform
 from radhar_cli.radar.impulse import Impulse
 from radhar_cli.radar.pulse_times import PulseTimes
-from radhar_cli.radar.waveform import Waveform
 from radhar_cli.readers.captures.formats import open_capture
 from radhar_cli.readers.captures.settings import CaptureSettings
 from radhar_cli.readers.captures.source import CaptureFiles, MissingKeysError, Parts, Source

@@ -117,10 +117,11 @@ def prepare_recordings(
         CaptureError: the folder is not that data set, or nothing of it can be read.
         FolderError: the output folder holds something else, or another run writes there.
     """
-    listed = preparation.recipe.list_takes(preparation.folder, preparation.settings)
-    if isinstance(listed, Path):
-        return Prepared(listed, 0, 0, (), ())
-    takes = _require_takes(listed, preparation)
+    recipe = preparation.recipe
+    if recipe.find_manifest is not None:
+        return Prepared(recipe.find_manifest(preparation.folder), 0, 0, (), ())
+    assert recipe.list_takes is not None
+    takes = _require_takes(recipe.list_takes(preparation.folder, preparation.settings), preparation)
     recordings = out.absolute() / RECORDINGS
     with folder_lock(out.absolute()):
         _reserve(preparation, out.absolute(), overwrite)
@@ -140,9 +141,10 @@ def prepare_recordings(
         splits, notes = _splits(readable, preparation.has_own_split)
         rows = _manifest_rows(recordings, readable, splits)
         write_text(recordings / MANIFEST, rows)
-    count = preparation.recipe.count
-    if count is not None and len(takes) != count:
-        notes.append(f"{len(takes)} of the {count} recordings of {preparation.name} are there")
+    if recipe.count is not None and len(takes) != recipe.count:
+        notes.append(
+            f"{len(takes)} of the {recipe.count} recordings of {preparation.name} are there"
+        )
     return Prepared(recordings / MANIFEST, len(takes), len(missing), left_out, tuple(notes))
 
 

@@ -29,8 +29,8 @@ from radhar_cli.files.new_hdf5 import new_hdf5
 from radhar_cli.files.replacing import replacing
 from radhar_cli.files.untrusted import Closing
 from radhar_cli.numerics.arrays import Complex
+from radhar_cli.radar.fmcw import Waveform
 from radhar_cli.radar.pulse_times import PulseTimes
-from radhar_cli.radar.waveform import Waveform
 from radhar_cli.readers.captures.source import Parts
 from radhar_cli.readers.untrusted_hdf5 import UntrustedFile
 

@@ -18,8 +18,8 @@ from scipy.special import gammaincc, gammainccinv, gammaincinv
 
 from radhar_cli.numerics.arrays import Bool, Complex, Float, Index
 from radhar_cli.processing.track import Track
+from radhar_cli.radar.fmcw import SPEED_OF_LIGHT, Waveform
 from radhar_cli.radar.pulse_times import PulseTimes
-from radhar_cli.radar.waveform import SPEED_OF_LIGHT, Waveform
 
 WINDOW_S = 0.16  # of the tracker's frames
 OVERLAP = 0.5

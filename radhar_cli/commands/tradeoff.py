@@ -9,7 +9,7 @@ from radhar_cli.commands.options import Overrides, ReplaceResults, resumable
 from radhar_cli.commands.tell import report, tell
 
 if TYPE_CHECKING:
-    from radhar_cli.study.tradeoff.report import TradeoffReport
+    from radhar_cli.study.tradeoff.report import TradeoffFiles
     from radhar_cli.study.tradeoff.sweep import Sweep
 
 QUICK_S = 168.0  # of a quick sweep, its start and figure left out
@@ -63,7 +63,7 @@ def tradeoff(
     from radhar_cli.dataset.folder import refuse_file
     from radhar_cli.dataset.workers import cores
     from radhar_cli.processes.worker_process import prepare_process
-    from radhar_cli.study.tradeoff.report import TradeoffReport
+    from radhar_cli.study.tradeoff.report import TradeoffFiles
     from radhar_cli.study.tradeoff.samples import Scenes
 
     refuse_file(out)
@@ -73,7 +73,7 @@ def tradeoff(
     words += [f"--set {override}" for override in scenes.overrides] + ["--quick"] * quick
     words += [] if minutes is None else [f"--minutes {minutes:g}"]
     words += [] if accuracy is None else [f"--accuracy {accuracy}"]
-    files = TradeoffReport(out, scenes, " ".join(words), cores())
+    files = TradeoffFiles(out, scenes, " ".join(words), cores())
     sweep = files.read_earlier(overwrite)
     prepare_process()
     seconds = QUICK_S if quick and minutes is None else 60 * (minutes or float("inf"))
@@ -85,7 +85,7 @@ def tradeoff(
     report(files=written, recommendation=sentences)
 
 
-def _measure(files: "TradeoffReport", sweep: "Sweep", seconds: float, seeds: int | None) -> None:
+def _measure(files: "TradeoffFiles", sweep: "Sweep", seconds: float, seeds: int | None) -> None:
     """Measure what is not measured yet; what there is when it is stopped is written.
 
     Args:

@@ -12,7 +12,7 @@ from radhar_cli.config.checks.data_set import (
     problems_of_processing,
     problems_of_recordings,
 )
-from radhar_cli.config.request import MeasuredRequest, Request
+from radhar_cli.config.first_level import MeasuredRequest, Request
 from radhar_cli.config.several_radars import OTHERS_KEY
 from radhar_cli.schema.section import Problem
 

@@ -6,7 +6,7 @@ from pydantic import BeforeValidator, Discriminator, Field, Tag, field_validator
 
 from radhar_cli.config.acting import CADENCES, OVER_RANGE, RANGES, SPECTRA
 from radhar_cli.errors import did_you_mean
-from radhar_cli.processing.cfar import CellAveraging
+from radhar_cli.processing.cfar_mask import CellAveraging
 from radhar_cli.schema.annotations import NeedsKey
 from radhar_cli.schema.number import (
     DECIBEL,

@@ -1,9 +1,9 @@
 """Which maps the radar of a config makes, and why not the others."""
 
 from radhar_cli.config.checks.smallest_waveform import fewest_windows
+from radhar_cli.config.first_level import AnyRequest, Request
 from radhar_cli.config.maps import ANGLE_TIME_MAPS, CADENCE_MAPS, FRAME_MAPS, KNOWN_MAPS
 from radhar_cli.config.radar import ArrayRadar
-from radhar_cli.config.request import AnyRequest, Request
 from radhar_cli.processing.map_kind import MIN_CADENCE_WINDOWS, kind_of, treatment_of
 
 

@@ -1,4 +1,4 @@
-"""Clutter, range compression, gate, windows, and the points of boards."""
+"""Clutter, range compression, gate, windows."""
 
 from math import sqrt
 from typing import Annotated, Any, Literal
@@ -22,7 +22,6 @@ from radhar_cli.numerics.rounding import half_up
 from radhar_cli.processing import canceller
 from radhar_cli.processing.frames import Frames
 from radhar_cli.radar.chirp_window import ChirpWindow, WindowName
-from radhar_cli.radar.detection import Chain
 from radhar_cli.schema.annotations import ByModel, NeedsKey
 from radhar_cli.schema.number import value_error
 from radhar_cli.schema.section import Flag, Section, defaults_of
@@ -188,20 +187,3 @@ class ProcessingConfig(Section):
         """Make the window before range compression."""
         assert self.range_window is not None  # filled in where the config was read
         return ChirpWindow(self.range_window, self.range_sidelobes_db)
-
-
-class CloudConfig(Section):
-    """How points are found in the frames of a board (docs/guide/boards.md)."""
-
-    chain: Chain = "best"
-    """Detection chain: best is what the data allow, the others what TI's firmware does with the
-    .cfg, board that which the file is for: the default where it has the commands of one."""
-    pfa: Annotated[float, Field(gt=0, le=0.1, strict=True), NeedsKey("cloud.chain", "best")] = 1e-5
-    """Rate of false alarms of a range-Doppler cell."""
-    quantise: Annotated[Flag, NeedsKey("cloud.chain", "board", "sdk1", "sdk3")] = True
-    """Whether numbers are rounded as the firmware's fixed-point ones."""
-    boundary_box: Flag = False
-    """Whether points outside boundaryBox of the .cfg (SceneryParam of people counting), a box in
-    the room, are left out; boards send them, and their trackers leave them out."""
-    doppler_carrier: Literal["centre", "start"] = "centre"
-    """Frequency that the points' speeds refer to; TI's software takes that at which ramps start."""

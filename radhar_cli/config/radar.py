@@ -49,9 +49,9 @@ from radhar_cli.radar.board import (
     sidelobe,
 )
 from radhar_cli.radar.detection import Chain, Firmware
+from radhar_cli.radar.fmcw import Waveform
 from radhar_cli.radar.frame_timing import FrameTiming, Sampling
 from radhar_cli.radar.impulse import Impulse, impulse
-from radhar_cli.radar.waveform import Waveform
 from radhar_cli.schema.annotations import GIVEN, ByModel, NeedsAnyKey, NeedsKey
 from radhar_cli.schema.number import (
     ANGLE,

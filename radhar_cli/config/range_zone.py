@@ -12,7 +12,7 @@ from radhar_cli.schema.number import nominal, support
 from radhar_cli.schema.section import for_activity
 
 if TYPE_CHECKING:
-    from radhar_cli.config.request import Request
+    from radhar_cli.config.first_level import Request
 
 AXES = ("range_m", "cross_range_m")
 REACH_M = 1.0  # of a limb, and of what a person drifts and falls, beyond the feet

@@ -12,8 +12,8 @@ from math import cos, isfinite, radians, sin
 from typing import Any
 
 from radhar_cli.config.documents import FILE_OF_CFG, ONE_VALUE, Document, Places, lay_over
+from radhar_cli.config.first_level import Request
 from radhar_cli.config.radar import RADARS, ArrayRadar, FmcwRadar, class_of_radar
-from radhar_cli.config.request import Request
 from radhar_cli.errors import did_you_mean
 from radhar_cli.schema.section import Problem
 

@@ -22,7 +22,7 @@ from radhar_cli.numerics.arrays import Complex, Float, Index
 from radhar_cli.numerics.phasor import unit_phasor
 from radhar_cli.processing.canceller import NO_CANCELLER, Canceller, Fir
 from radhar_cli.processing.look import weights
-from radhar_cli.radar.waveform import Waveform
+from radhar_cli.radar.fmcw import Waveform
 
 # Six-point interpolation errs by the sixth power of the spacing; this one made -114 dB or less of
 # every activity at 77 GHz.

@@ -6,7 +6,7 @@ import numpy as np
 
 from radhar_cli.numerics.arrays import Complex, Float
 from radhar_cli.numerics.phasor import unit_phasor
-from radhar_cli.radar.waveform import Waveform
+from radhar_cli.radar.fmcw import Waveform
 
 BLOCK_SAMPLES = 2**18  # size of a block of the beat matrix
 BLOCK = 2**11  # start phasors per block; some forty follow from each

@@ -36,7 +36,7 @@ from radhar_cli.numerics.arrays import Bool, Complex, Float, Index
 from radhar_cli.numerics.phasor import unit_phasor
 from radhar_cli.processing.canceller import FIRST_DIFFERENCE, Canceller, Fir
 from radhar_cli.processing.look import Look, RangeSum
-from radhar_cli.radar.waveform import Waveform
+from radhar_cli.radar.fmcw import Waveform
 
 # Values at work at once, which stay in the cache: at knots and at pulses; of phasors, of which some
 # twenty follow from each; and at knots from which those follow.

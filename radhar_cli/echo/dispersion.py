@@ -14,8 +14,8 @@ from radhar_cli.echo.beat import beat_matrix, powers, start_phase
 from radhar_cli.echo.paths import Paths, Through
 from radhar_cli.numerics.arrays import Complex, Float
 from radhar_cli.numerics.phasor import unit_phasor
+from radhar_cli.radar.fmcw import Waveform
 from radhar_cli.radar.layers import Layers
-from radhar_cli.radar.waveform import Waveform
 
 BLOCK = 2**16  # samples of all paths at once
 ROUNDING = 1e-13

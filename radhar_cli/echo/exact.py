@@ -12,7 +12,7 @@ from radhar_cli.echo.receiver.impairment import Impairment
 from radhar_cli.numerics.arrays import Complex, Float, Index
 from radhar_cli.processing.canceller import Fir
 from radhar_cli.processing.look import Look, RawSamples
-from radhar_cli.radar.waveform import Waveform
+from radhar_cli.radar.fmcw import Waveform
 
 CHUNK_PULSES = 2**15
 

@@ -15,11 +15,11 @@ import numpy as np
 
 from radhar_cli.echo.paths import Paths, Through
 from radhar_cli.numerics.arrays import Float
+from radhar_cli.radar.fmcw import SPEED_OF_LIGHT
 from radhar_cli.radar.propagation import Antennas
 from radhar_cli.radar.room import Face, Leg, Point
-from radhar_cli.radar.transmission import pass_wall_on_legs
 from radhar_cli.radar.wall import Wall
-from radhar_cli.radar.waveform import SPEED_OF_LIGHT
+from radhar_cli.radar.wall_rays import pass_wall_on_legs
 
 # A face nearer than this to the middle of the antennas is what they are mounted on, m.
 MOUNT_M = 0.05

@@ -38,7 +38,7 @@ from radhar_cli.numerics.phasor import unit_phasor
 from radhar_cli.processing.canceller import NO_CANCELLER, Fir
 from radhar_cli.processing.look import Look, RangeBins
 from radhar_cli.processing.range_compression import range_compression
-from radhar_cli.radar.waveform import Waveform
+from radhar_cli.radar.fmcw import Waveform
 
 VALUES = 2**20  # envelopes at knots per block
 AT_PEAK = 1e-9  # sine of the denominator below which D is N

@@ -12,7 +12,7 @@ import numpy as np
 
 from radhar_cli.numerics.arrays import Complex, Float
 from radhar_cli.processing.look import weights
-from radhar_cli.radar.waveform import Waveform
+from radhar_cli.radar.fmcw import Waveform
 
 MAX_CELLS = 2**22  # size of a table; a cell has 64 bytes
 REFERENCE_OVERSAMPLING = 32  # of quintics, which then err by -245 dB or less

@@ -14,8 +14,8 @@ from radhar_cli.echo.dispersion import beat_of, power_of
 from radhar_cli.echo.paths import Paths, PathSource
 from radhar_cli.numerics.arrays import Complex, Float, Index
 from radhar_cli.numerics.phasor import unit_phasor
+from radhar_cli.radar.fmcw import SPEED_OF_LIGHT, Waveform
 from radhar_cli.radar.impulse import Impulse
-from radhar_cli.radar.waveform import SPEED_OF_LIGHT, Waveform
 
 CHUNK = 2**10  # pulses at once
 REACH = 9.0  # of a pulse to both sides, in s: exp(-REACH^2/2) is 3e-18

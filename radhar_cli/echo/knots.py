@@ -21,7 +21,7 @@ from radhar_cli.echo.interpolation import (
 )
 from radhar_cli.echo.paths import Paths, PathSource
 from radhar_cli.numerics.arrays import Bool, Float, Index
-from radhar_cli.radar.waveform import Waveform
+from radhar_cli.radar.fmcw import Waveform
 
 CHUNK_KNOTS, BLOCK = 32768, 2**15
 MIN_KNOTS = 64  # per recording

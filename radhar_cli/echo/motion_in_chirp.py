@@ -17,7 +17,7 @@ from radhar_cli.echo.interpolation import lagrange_basis
 from radhar_cli.echo.paths import PathSource
 from radhar_cli.numerics.arrays import Complex, Float
 from radhar_cli.numerics.phasor import unit_phasor
-from radhar_cli.radar.waveform import Waveform
+from radhar_cli.radar.fmcw import Waveform
 
 NODES = 5
 

@@ -3,9 +3,9 @@
 from math import dist, pi
 from typing import NamedTuple
 
+from radhar_cli.radar.fmcw import SPEED_OF_LIGHT, Waveform
 from radhar_cli.radar.propagation import Antennas
 from radhar_cli.radar.wall import Wall
-from radhar_cli.radar.waveform import SPEED_OF_LIGHT, Waveform
 
 
 class StaticReturn(NamedTuple):

@@ -18,7 +18,7 @@ from radhar_cli.processing.angle_time import ANGLE_TIME_KINDS
 from radhar_cli.processing.image import decibels
 from radhar_cli.processing.map_kind import treatment_of
 from radhar_cli.processing.power_map import PowerMap
-from radhar_cli.radar.waveform import SPEED_OF_LIGHT, Waveform
+from radhar_cli.radar.fmcw import SPEED_OF_LIGHT, Waveform
 from radhar_cli.scene.scene import Scene
 from radhar_cli.scene.single.simulate import Simulation
 from radhar_cli.schema.number import nominal

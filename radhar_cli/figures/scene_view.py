@@ -9,7 +9,7 @@ from radhar_cli.echo.bodies.motion_paths import point_delay
 from radhar_cli.figures.sides import limbs
 from radhar_cli.motion.protocol import Motion
 from radhar_cli.numerics.arrays import Float
-from radhar_cli.radar.waveform import SPEED_OF_LIGHT
+from radhar_cli.radar.fmcw import SPEED_OF_LIGHT
 from radhar_cli.scene.products.run import record
 from radhar_cli.scene.scene import Scene
 from radhar_cli.scene.single.truth import evaluate_truth

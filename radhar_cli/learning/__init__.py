@@ -2,11 +2,11 @@
 
 The only package that imports PyTorch; the extra `train` installs it.
 
-    settings        the YAML file of `radhar train`; choices: the networks and tasks it may name
+    settings        the YAML file of `radhar train`; registry: the networks and tasks it may name
     images/         labelled images or sequences of dataset.h5, or of class folders
     batches         which images make a step; augmentation
     tasks/          what is learned, one task per file: targets, loss, score, report
-    models/         one network per file; zoo: those of timm
+    models/         one network per file; timm_networks: those of timm
     machine         device, precision, reading processes, what is repeatable
     optimiser       learning rate, update
     learner         a training step, validation; training_set: what is learned from
@@ -15,6 +15,6 @@ The only package that imports PyTorch; the extra `train` installs it.
     evaluation      probabilities, features and speed; metrics: how good they are
     report          `radhar eval`: evaluated_run and the reports of tasks/ fill it
     adaptation      batch norm fitted to unlabelled images
-    stream          samples for a PyTorch DataLoader, synthesised in its workers; sequences: stored
+    torch_dataset   samples and sequences for a PyTorch DataLoader
     onnx_export     the network without PyTorch
 """

@@ -25,9 +25,9 @@ from radhar_cli.errors import ModelError
 from radhar_cli.files.table_text import csv_text
 from radhar_cli.files.untrusted import regular_size
 from radhar_cli.learning.batches import Normalisation
-from radhar_cli.learning.choices import Kind, image_channels_of
 from radhar_cli.learning.images.image_set import shape_in_words
 from radhar_cli.learning.models.build import Cost, build_model, cost
+from radhar_cli.learning.registry import Kind, image_channels_of
 from radhar_cli.learning.run_files import (
     ABOUT,
     ALL,

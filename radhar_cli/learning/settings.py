@@ -13,7 +13,7 @@ from pydantic import (
 )
 
 from radhar_cli.extensions import load_extensions
-from radhar_cli.learning.choices import NETWORKS, TASKS, Kind, sequences_of
+from radhar_cli.learning.registry import NETWORKS, TASKS, Kind, sequences_of
 from radhar_cli.schema.number import value_error
 from radhar_cli.schema.section import Section
 

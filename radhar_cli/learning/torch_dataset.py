@@ -11,9 +11,9 @@ from torch import Tensor
 from torch.utils.data import Dataset
 
 from radhar_cli.errors import ConfigError
-from radhar_cli.learning.choices import Kind
 from radhar_cli.learning.images.image_set import ImageSet, check_split_name
 from radhar_cli.learning.images.opening import open_images
+from radhar_cli.learning.registry import Kind
 
 
 @dataclass(frozen=True, repr=False)

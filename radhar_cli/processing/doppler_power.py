@@ -13,7 +13,7 @@ from radhar_cli.processing.gate import Gate
 from radhar_cli.processing.power_map import Axis, PowerMap
 from radhar_cli.processing.signal import Signal
 from radhar_cli.processing.stft import Stft
-from radhar_cli.radar.waveform import SPEED_OF_LIGHT
+from radhar_cli.radar.fmcw import SPEED_OF_LIGHT
 
 
 @dataclass(frozen=True)

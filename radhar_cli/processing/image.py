@@ -9,7 +9,7 @@ import numpy as np
 
 from radhar_cli.errors import RadharError
 from radhar_cli.numerics.arrays import Float, Half, Levels
-from radhar_cli.processing.cfar import FLOOR_DB
+from radhar_cli.processing.cfar_mask import FLOOR_DB
 from radhar_cli.processing.entropy import EntropySum, largest_power
 
 BAND = 64  # rows or columns per matrix product, besides the overlap

@@ -17,8 +17,8 @@ import numpy as np
 
 from radhar_cli.numerics.arrays import Complex, Float, Index
 from radhar_cli.processing.range_compression import range_compression
+from radhar_cli.radar.fmcw import Waveform
 from radhar_cli.radar.impulse import Impulse
-from radhar_cli.radar.waveform import Waveform
 
 State = TypeVar("State")
 BLOCK = 2**13  # pulses of a slow-time process made at once

@@ -5,7 +5,7 @@ from typing import Any
 import numpy as np
 
 from radhar_cli.numerics.arrays import Complex
-from radhar_cli.radar.waveform import Waveform
+from radhar_cli.radar.fmcw import Waveform
 
 
 def range_compression(s: Complex, waveform: Waveform, bins: slice = slice(None)) -> Complex:

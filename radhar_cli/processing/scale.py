@@ -7,7 +7,7 @@ from math import log10
 from typing import TypeAlias
 
 from radhar_cli.numerics.arrays import Float, Levels
-from radhar_cli.processing.cfar import CellAveraging, decibels_of
+from radhar_cli.processing.cfar_mask import CellAveraging, decibels_of
 from radhar_cli.processing.entropy import largest_power
 from radhar_cli.processing.image import levels, noise_floor
 

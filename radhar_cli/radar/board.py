@@ -18,12 +18,12 @@ import numpy as np
 
 from radhar_cli.numerics.arrays import Float, Index
 from radhar_cli.numerics.constants import SPEED_OF_LIGHT
+from radhar_cli.radar.fmcw import Waveform
 from radhar_cli.radar.frame_timing import FrameTiming
 from radhar_cli.radar.propagation import Aim, Antennas, boresight_axes, roll_matrix
 from radhar_cli.radar.pulse_times import PulseTimes
 from radhar_cli.radar.room import Point
 from radhar_cli.radar.ti_family import Family
-from radhar_cli.radar.waveform import Waveform
 
 Places: TypeAlias = tuple[tuple[float, float], ...]  # (left, up) in half wavelengths
 NOISE_FIGURE_DB = 30.0  # of boards that are not known better

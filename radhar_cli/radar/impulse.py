@@ -12,7 +12,7 @@ from math import log, pi, sqrt
 import numpy as np
 
 from radhar_cli.numerics.arrays import Float
-from radhar_cli.radar.waveform import SPEED_OF_LIGHT, Waveform
+from radhar_cli.radar.fmcw import SPEED_OF_LIGHT, Waveform
 
 
 @dataclass(frozen=True)

@@ -16,8 +16,8 @@ from typing import NamedTuple
 import numpy as np
 
 from radhar_cli.numerics.arrays import Complex, Float
+from radhar_cli.radar.fmcw import SPEED_OF_LIGHT
 from radhar_cli.radar.materials import permittivity
-from radhar_cli.radar.waveform import SPEED_OF_LIGHT
 
 
 class Layer(NamedTuple):

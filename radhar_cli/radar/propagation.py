@@ -9,8 +9,8 @@ from typing import NamedTuple, TypeAlias
 import numpy as np
 
 from radhar_cli.numerics.arrays import Float
+from radhar_cli.radar.fmcw import SPEED_OF_LIGHT
 from radhar_cli.radar.room import DIRECT_LEG, Leg, Point
-from radhar_cli.radar.waveform import SPEED_OF_LIGHT
 
 Remember: TypeAlias = Callable[[object, Callable[[], Float]], Float]
 

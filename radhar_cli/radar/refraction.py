@@ -16,8 +16,8 @@ from typing import NamedTuple
 import numpy as np
 
 from radhar_cli.numerics.arrays import Float
+from radhar_cli.radar.fmcw import SPEED_OF_LIGHT
 from radhar_cli.radar.wall import Crossing, Wall, extra_delay, faces_met
-from radhar_cli.radar.waveform import SPEED_OF_LIGHT
 
 # Rounding error of f in units of rho: at most seven roundings of half an epsilon each.
 MISSES_BY = 8 * np.finfo(float).eps

@@ -8,8 +8,8 @@ from typing import Literal, NamedTuple
 import numpy as np
 
 from radhar_cli.numerics.arrays import Bool, Float, Index
+from radhar_cli.radar.fmcw import SPEED_OF_LIGHT
 from radhar_cli.radar.layers import Layers
-from radhar_cli.radar.waveform import SPEED_OF_LIGHT
 
 
 @dataclass(frozen=True)

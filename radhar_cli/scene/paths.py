@@ -29,11 +29,11 @@ from radhar_cli.motion.segments import (
     thickness,
 )
 from radhar_cli.numerics.arrays import Float
+from radhar_cli.radar.fmcw import Waveform
 from radhar_cli.radar.person_shadow import BodyBox
 from radhar_cli.radar.propagation import Antennas
 from radhar_cli.radar.room import Leg
 from radhar_cli.radar.wall import Wall
-from radhar_cli.radar.waveform import Waveform
 from radhar_cli.scene.motion import body_of
 from radhar_cli.scene.room import ways_of
 from radhar_cli.scene.scene import Person, Scene

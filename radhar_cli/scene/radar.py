@@ -16,8 +16,8 @@ from radhar_cli.config.radar import (
 )
 from radhar_cli.radar.board import DEVICES, Board
 from radhar_cli.radar.detection import Detection
+from radhar_cli.radar.fmcw import Waveform
 from radhar_cli.radar.propagation import Aim, Antennas, boresight_axes
-from radhar_cli.radar.waveform import Waveform
 from radhar_cli.scene.scene import Scene
 
 Vector: TypeAlias = tuple[float, float, float]

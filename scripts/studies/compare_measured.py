@@ -22,7 +22,7 @@ from numpy.typing import NDArray
 
 from radhar_cli.config import load_config
 from radhar_cli.config.data_set import Config
-from radhar_cli.radar.waveform import SPEED_OF_LIGHT
+from radhar_cli.radar.fmcw import SPEED_OF_LIGHT
 from radhar_cli.scene.single.simulate import simulate
 from radhar_cli.study.two_sample.map_statistics import DopplerMap, power_statistics
 

@@ -11,8 +11,8 @@ from radhar_cli.echo.beat import beat_matrix
 from radhar_cli.echo.bodies.motion_paths import MotionPaths
 from radhar_cli.motion.protocol import Motion
 from radhar_cli.numerics.arrays import Complex, Float
+from radhar_cli.radar.fmcw import Waveform
 from radhar_cli.radar.propagation import Antennas
-from radhar_cli.radar.waveform import Waveform
 from radhar_cli.scene.motion import motion_of
 from radhar_cli.scene.scene import nominal_scene
 

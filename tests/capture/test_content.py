@@ -6,7 +6,7 @@ import pytest
 from helpers.boards import MARS
 
 from radhar_cli.capture.content import Beat, describe_difference
-from radhar_cli.radar.waveform import Waveform
+from radhar_cli.radar.fmcw import Waveform
 
 BEAT = Beat(77e9, 1.2e9, 5e6, 128, 800.0)
 

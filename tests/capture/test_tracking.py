@@ -9,8 +9,8 @@ from radhar_cli.capture.tracking import TorsoTrack, hann_in_range, peaks, track_
 from radhar_cli.echo.beat import beat_matrix
 from radhar_cli.numerics.arrays import Complex, Float
 from radhar_cli.processing.range_compression import range_compression
+from radhar_cli.radar.fmcw import SPEED_OF_LIGHT, Waveform
 from radhar_cli.radar.pulse_times import PulseTimes
-from radhar_cli.radar.waveform import SPEED_OF_LIGHT, Waveform
 
 WAVEFORM = Waveform(fc=24e9, bandwidth=1e9, chirp=40e-6, adc_rate=5e6, prf=1000.0, duration=4.0)
 LENGTH = 160

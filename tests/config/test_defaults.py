@@ -9,7 +9,7 @@ import pytest
 
 from radhar_cli.config import Config, load_config
 from radhar_cli.config.engine import EngineConfig
-from radhar_cli.config.request import Request
+from radhar_cli.config.first_level import Request
 from radhar_cli.dataset.layout import Rows
 from radhar_cli.echo.accuracy import LOOSEST_DB
 from radhar_cli.numerics.constants import SPEED_OF_LIGHT

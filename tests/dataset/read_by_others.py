@@ -14,7 +14,7 @@ import numpy as np
 import webdataset
 from PIL import Image
 
-from radhar_cli.learning.models.zoo import load_timm
+from radhar_cli.learning.models.timm_networks import load_timm
 
 load_timm()  # torchvision's operators may be of another PyTorch
 from torchvision.datasets import ImageFolder  # noqa: E402

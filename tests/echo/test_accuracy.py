@@ -19,7 +19,7 @@ from radhar_cli.motion.activities.activity import ACTIVITIES, Activity
 from radhar_cli.motion.protocol import ScattererSubset
 from radhar_cli.motion.skeleton import JOINTS
 from radhar_cli.processing.canceller import FIRST_DIFFERENCE, Fir
-from radhar_cli.radar.waveform import Waveform
+from radhar_cli.radar.fmcw import Waveform
 from radhar_cli.scene.motion import motion_of
 from radhar_cli.scene.products.receiver import name_of_impairments
 from radhar_cli.scene.products.run import record

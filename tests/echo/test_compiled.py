@@ -16,7 +16,7 @@ from radhar_cli.echo.knots import Spacing
 from radhar_cli.echo.paths import Paths
 from radhar_cli.numerics.accelerators import installed
 from radhar_cli.processing.canceller import FIRST_DIFFERENCE, NO_CANCELLER
-from radhar_cli.radar.waveform import Waveform
+from radhar_cli.radar.fmcw import Waveform
 
 needs_numba = pytest.mark.skipif(installed("numba") is None, reason="needs radhar[fast]")
 OVERSAMPLING = 16

@@ -12,7 +12,7 @@ from radhar_cli.echo.beat import beat_matrix
 from radhar_cli.motion.activities.activity import ACTIVITIES
 from radhar_cli.numerics.phasor import unit_phasor
 from radhar_cli.processing.canceller import Fir
-from radhar_cli.radar.waveform import Waveform
+from radhar_cli.radar.fmcw import Waveform
 from radhar_cli.scene.products.run import record
 from radhar_cli.scene.scene import draw_scene
 

@@ -13,7 +13,7 @@ from radhar_cli.echo.accuracy import PROBES
 from radhar_cli.echo.direct import DirectEcho
 from radhar_cli.echo.interpolation import AFTER, BEFORE
 from radhar_cli.processing.canceller import NO_CANCELLER
-from radhar_cli.radar.waveform import Waveform
+from radhar_cli.radar.fmcw import Waveform
 
 pytestmark = pytest.mark.usefixtures("either_sum")
 

@@ -7,8 +7,8 @@ from radhar_cli.echo.beat import beat_matrix
 from radhar_cli.echo.dispersion import beat_of, power_of
 from radhar_cli.echo.motion_in_chirp import moving_beat_matrix
 from radhar_cli.echo.paths import Paths, Through
+from radhar_cli.radar.fmcw import Waveform
 from radhar_cli.radar.layers import Layer, Layers
-from radhar_cli.radar.waveform import Waveform
 
 RADAR = Waveform(2e9, 1e9, 40e-6, 2.5e6, 200.0, 0.1)
 WALL = Layers((Layer(0.05, "wood"), Layer(0.2, 7 - 0.1j)), parallel=True)

@@ -25,7 +25,7 @@ from radhar_cli.processing.canceller import (
     MeanRemoval,
 )
 from radhar_cli.processing.range_compression import range_compression
-from radhar_cli.radar.waveform import Waveform
+from radhar_cli.radar.fmcw import Waveform
 from radhar_cli.scene.products.run import record
 from radhar_cli.scene.scene import draw_scene
 

@@ -13,7 +13,7 @@ from radhar_cli.echo import half_band_sum as hbs
 from radhar_cli.echo.beat import beat_matrix
 from radhar_cli.processing.look import RangeSum, noise_gain, weights
 from radhar_cli.radar.chirp_window import ChirpWindow
-from radhar_cli.radar.waveform import Waveform
+from radhar_cli.radar.fmcw import Waveform
 
 RADARS = {
     "centre": ref.Radar(),

@@ -7,9 +7,9 @@ import pytest
 
 from radhar_cli.echo.impulse import impulse_echo, impulse_power
 from radhar_cli.echo.paths import Paths, Through
+from radhar_cli.radar.fmcw import SPEED_OF_LIGHT
 from radhar_cli.radar.impulse import Impulse
 from radhar_cli.radar.layers import Layer, Layers
-from radhar_cli.radar.waveform import SPEED_OF_LIGHT
 
 RADAR = Impulse(1e9, 2e9, 2e-9, 1e9, 100.0, 0.05, profile=(0.0, 4.8), samples=256)
 DELAY, AMPLITUDE = [2e-8, 2.15e-8], [1.0, -0.4]

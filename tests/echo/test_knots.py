@@ -8,7 +8,7 @@ from radhar_cli.echo.knots import Roughness, Spacing, resolve
 from radhar_cli.echo.paths import Paths
 from radhar_cli.echo.phase_recurrence import run_length
 from radhar_cli.numerics.arrays import Float
-from radhar_cli.radar.waveform import Waveform
+from radhar_cli.radar.fmcw import Waveform
 
 RADAR = Waveform(77e9, 4e9, 40e-6, 1e6, prf=5000.0, duration=0.5)
 SPACING = Spacing(200.0, 0.1, 0.5)

@@ -9,7 +9,7 @@ from helpers import reference as ref
 
 from radhar_cli.echo.exact import beat_at
 from radhar_cli.processing.signal import shown_pulses
-from radhar_cli.radar.waveform import Waveform
+from radhar_cli.radar.fmcw import Waveform
 
 
 @pytest.mark.parametrize(

@@ -7,9 +7,9 @@ import numpy as np
 from torch import Tensor, nn
 
 from radhar_cli.learning.batches import Targets
-from radhar_cli.learning.choices import NETWORKS, TASKS, NetworkChoice, TaskChoice
 from radhar_cli.learning.images.image_set import ImageSet
 from radhar_cli.learning.models.outputs import Outputs
+from radhar_cli.learning.registry import NETWORKS, TASKS, NetworkChoice, TaskChoice
 from radhar_cli.learning.tasks.task import Evaluation, Task
 
 

@@ -38,7 +38,7 @@ from radhar_cli.processing.power_map import Axis, PowerMap
 from radhar_cli.processing.range_compression import range_compression
 from radhar_cli.processing.signal import Signal
 from radhar_cli.processing.track import StandingTrack
-from radhar_cli.radar.waveform import Waveform
+from radhar_cli.radar.fmcw import Waveform
 from radhar_cli.scene.checks.drawing import draw_valid_scene
 from radhar_cli.scene.motion import motion_of
 from radhar_cli.scene.products.plan import Product

@@ -12,7 +12,7 @@ from learning.patterns import split_tree
 
 import radhar_cli
 from radhar_cli import extensions
-from radhar_cli.learning.choices import NETWORKS, TASKS
+from radhar_cli.learning.registry import NETWORKS, TASKS
 
 QUICK = (
     *("device=cpu", "precision=float32", "threads=1", "input=gray", "epochs=20"),

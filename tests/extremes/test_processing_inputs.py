@@ -24,7 +24,7 @@ from radhar_cli.processing.frames import Frames
 from radhar_cli.processing.look import RangeSum
 from radhar_cli.processing.range_compression import range_compression
 from radhar_cli.processing.stft import Stft
-from radhar_cli.radar.waveform import Waveform
+from radhar_cli.radar.fmcw import Waveform
 from radhar_cli.scene.products.table import products
 
 Function = Callable[[np.ndarray], np.ndarray]

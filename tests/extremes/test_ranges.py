@@ -26,7 +26,7 @@ from radhar_cli.echo.exact import beat_blocks
 from radhar_cli.errors import ConfigError, SceneError
 from radhar_cli.motion.activities.activity import ACTIVITIES
 from radhar_cli.motion.skeleton import JOINTS, PARENTS, SKELETON
-from radhar_cli.radar.waveform import Waveform
+from radhar_cli.radar.fmcw import Waveform
 from radhar_cli.scene.checks.warnings import scene_warnings
 from radhar_cli.scene.motion import motion_of
 from radhar_cli.scene.products.run import record as record_scene

@@ -4,7 +4,7 @@ import pytest
 import torch
 from learning.patterns import split_tree, trained
 
-from radhar_cli.learning.models.zoo import load_timm
+from radhar_cli.learning.models.timm_networks import load_timm
 
 
 @pytest.fixture(autouse=True)

@@ -6,10 +6,10 @@ import torch
 
 from radhar_cli.errors import ConfigError
 from radhar_cli.learning.batches import Normalisation
-from radhar_cli.learning.choices import TASKS
 from radhar_cli.learning.images.sample_table import SampleTable, objects
 from radhar_cli.learning.models.build import build_model
 from radhar_cli.learning.models.outputs import OutputShape
+from radhar_cli.learning.registry import TASKS
 from radhar_cli.learning.settings import TrainConfig
 from radhar_cli.learning.tasks.categories import Classifier, require_classifier
 from radhar_cli.learning.tasks.task import create_task

@@ -7,7 +7,7 @@ import pytest
 from helpers import reference as ref
 
 from radhar_cli.processing.doppler_compensation import compensate
-from radhar_cli.radar.waveform import Waveform
+from radhar_cli.radar.fmcw import Waveform
 
 RADAR = ref.Radar(24e9, 1e9, adc_rate=1e6, prf=1000, duration=0.2)
 centred = pytest.mark.parametrize("centred", [True, False], ids=["centre", "start"])

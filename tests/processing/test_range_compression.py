@@ -8,7 +8,7 @@ from helpers import reference as ref
 
 from radhar_cli.processing.look import RangeSum
 from radhar_cli.processing.range_compression import range_compression
-from radhar_cli.radar.waveform import Waveform
+from radhar_cli.radar.fmcw import Waveform
 
 RADARS = {
     "default": ref.Radar(adc_rate=1e6),

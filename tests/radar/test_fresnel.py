@@ -9,8 +9,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from radhar_cli.radar.fresnel import Polarisation, face_factor, reflection
-from radhar_cli.radar.transmission import transmission
 from radhar_cli.radar.wall import Wall, crossing, field_factor
+from radhar_cli.radar.wall_rays import transmission
 
 WALL = Wall((1.0, 0.0, 1.25), (0.24, 5.0, 2.5), eps_r=6.0, loss_tangent=0.03)
 FC = 2e9

@@ -7,10 +7,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from radhar_cli.radar.fmcw import SPEED_OF_LIGHT
 from radhar_cli.radar.layers import Layer, Layers
 from radhar_cli.radar.materials import NUMBERS
 from radhar_cli.radar.wall import Crossing, Wall, field_factor
-from radhar_cli.radar.waveform import SPEED_OF_LIGHT
 
 EPS_6 = (Layer(0.24, 6 - 0.18j),)
 CONCRETE = (Layer(0.2, "concrete"),)

@@ -14,8 +14,8 @@ from radhar_cli.radar.refraction import (
     outside_tangent,
     refract,
 )
-from radhar_cli.radar.transmission import wall_delay
 from radhar_cli.radar.wall import Wall, crossing, extra_delay, plane_wave
+from radhar_cli.radar.wall_rays import wall_delay
 
 C = 299_792_458.0
 WALL = Wall((1.0, 0.0, 1.25), (0.24, 5.0, 2.5), eps_r=6.0, loss_tangent=0.03, rays="refracted")

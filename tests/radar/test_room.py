@@ -7,10 +7,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from radhar_cli.radar.fmcw import SPEED_OF_LIGHT
 from radhar_cli.radar.materials import permittivity
 from radhar_cli.radar.propagation import Aim, Antennas, amplitude, boresight_axes, leg
 from radhar_cli.radar.room import DIRECT_LEG, FACES, Face, Leg, names_of, reflected_legs
-from radhar_cli.radar.waveform import SPEED_OF_LIGHT
 
 WAVELENGTH, GAIN = SPEED_OF_LIGHT / 2.5e9, 10**0.6
 P = np.array([3.7, 0.8, 1.5])[:, None, None]

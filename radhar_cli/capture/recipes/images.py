@@ -6,11 +6,11 @@ Images say no axes: `maps`, `recordings.rows` and `recordings.window_s` of the c
 from pathlib import Path
 
 from radhar_cli.capture.images import are_images
-from radhar_cli.capture.recipes.recipe import NoSettings, SetRecipe
+from radhar_cli.capture.recipes.recipe import SetRecipe
 from radhar_cli.dataset.image_file import SUFFIXES
 
 
-def list_takes(folder: Path, settings: NoSettings) -> Path:
+def find_manifest(folder: Path) -> Path:
     """Return what holds the images: a table or an .npz in a folder of such, else the folder."""
     if folder.is_dir():
         inside = sorted(path for path in folder.iterdir() if path.is_file())
@@ -27,6 +27,6 @@ RECIPE = SetRecipe(
     holds="a folder a class, a table (file, label, person, split), .npz, Parquet of Hugging Face",
     tested="files written by these layouts",
     layout="walking/0001.png",
-    list_takes=list_takes,
+    find_manifest=find_manifest,
     config={"maps": [], "output": {"png": True}},
 )

@@ -45,9 +45,10 @@ class SetRecipe:
         holds: Size, classes and persons, in words.
         tested: Data that the recipe was tried on, in words.
         layout: Files that should lie in the folder, as a message shows them.
-        list_takes: Lists the takes of a folder by its settings; or returns a manifest that
-            `radhar generate --recordings` takes as it stands.
         config: Keys of the config of its data set that differ from the defaults.
+        list_takes: Lists the takes of a folder by its settings.
+        find_manifest: Finds what `radhar generate --recordings` takes as it stands, in place of
+            `list_takes`.
         settings: Keys that the user has to give, by `--set`.
         count: Number of takes of the whole set; None where it is not known.
     """
@@ -57,8 +58,9 @@ class SetRecipe:
     holds: str
     tested: str
     layout: str
-    list_takes: Callable[[Path, Any], Iterable[Take] | Path]
     config: Mapping[str, Any]
+    list_takes: Callable[[Path, Any], Iterable[Take]] | None = None
+    find_manifest: Callable[[Path], Path] | None = None
     settings: type[Section] = NoSettings
     count: int | None = None
 

@@ -6,8 +6,8 @@ from itertools import pairwise
 from math import asin, degrees
 from typing import TYPE_CHECKING
 
+from radhar_cli.config.first_level import Request
 from radhar_cli.config.radar import ArrayRadar, BoardRadar
-from radhar_cli.config.request import Request
 from radhar_cli.processing.angle_time import ANGLE_TIME_KINDS
 from radhar_cli.processing.frame_maps import FRAME_MAP_KINDS
 from radhar_cli.processing.map_kind import kind_of

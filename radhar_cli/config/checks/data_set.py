@@ -21,9 +21,9 @@ from radhar_cli.config.checks.room import (
 )
 from radhar_cli.config.checks.signal import processing_problems
 from radhar_cli.config.checks.streams import stream_problems
+from radhar_cli.config.first_level import MeasuredRequest, Request
 from radhar_cli.config.maps import MAPS_OF_SAMPLES, without_cadences
 from radhar_cli.config.radar import ArrayRadar
-from radhar_cli.config.request import MeasuredRequest, Request
 from radhar_cli.schema.section import Problem
 
 

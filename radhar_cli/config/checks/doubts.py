@@ -3,8 +3,8 @@
 from collections.abc import Iterable, Iterator
 
 from radhar_cli.config.engine import EngineConfig
+from radhar_cli.config.first_level import Request
 from radhar_cli.config.radar import ImpulseRadar
-from radhar_cli.config.request import Request
 from radhar_cli.motion.activities.activity import Activity
 from radhar_cli.motion.movements.standing import NOBODY
 from radhar_cli.schema.number import nominal, support

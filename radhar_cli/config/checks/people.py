@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator
 
-from radhar_cli.config.request import Request
+from radhar_cli.config.first_level import Request
 from radhar_cli.config.sequence import SequenceConfig
 from radhar_cli.motion.activities.activity import ACTIVITIES, STREAM, activity_named, own_activities
 from radhar_cli.motion.movements.catalogue import MOVEMENTS

@@ -5,6 +5,7 @@ from math import ceil
 from typing import assert_never
 
 from radhar_cli.config.checks.smallest_waveform import ENDS, waveform_at
+from radhar_cli.config.first_level import AnyRequest, Request
 from radhar_cli.config.maps import FRAME_MAPS, OF_FRAMES, OF_POINTS
 from radhar_cli.config.offered_maps import why_no_map
 from radhar_cli.config.radar import (
@@ -17,7 +18,6 @@ from radhar_cli.config.radar import (
     SfcwRadar,
     Steps,
 )
-from radhar_cli.config.request import AnyRequest, Request
 from radhar_cli.numerics.rounding import half_up, show_beside
 from radhar_cli.radar.board import DEVICES
 from radhar_cli.radar.impulse import impulse

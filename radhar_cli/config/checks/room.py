@@ -4,8 +4,8 @@ from collections.abc import Iterator, Sequence
 from contextlib import suppress
 from typing import Any
 
+from radhar_cli.config.first_level import Request
 from radhar_cli.config.radar import ArrayRadar, ImpulseRadar
-from radhar_cli.config.request import Request
 from radhar_cli.config.room import WallConfig
 from radhar_cli.schema.number import support
 from radhar_cli.schema.section import Problem, for_activity

@@ -10,6 +10,7 @@ from radhar_cli.config.checks.smallest_waveform import (
     waveform_at,
     window_pulses,
 )
+from radhar_cli.config.first_level import AnyRequest, Request
 from radhar_cli.config.image import AbsoluteReference
 from radhar_cli.config.maps import (
     ANGLE_TIME_MAPS,
@@ -21,7 +22,6 @@ from radhar_cli.config.maps import (
 )
 from radhar_cli.config.offered_maps import why_no_map
 from radhar_cli.config.radar import MIN_WINDOW, ArrayRadar
-from radhar_cli.config.request import AnyRequest, Request
 from radhar_cli.numerics.constants import SPEED_OF_LIGHT
 from radhar_cli.numerics.rounding import show_beside
 from radhar_cli.processing.map_kind import treatment_of

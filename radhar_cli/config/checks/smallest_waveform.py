@@ -2,9 +2,9 @@
 
 from typing import cast
 
+from radhar_cli.config.first_level import AnyRequest
 from radhar_cli.config.radar import ArrayRadar, SceneRadar
-from radhar_cli.config.request import AnyRequest
-from radhar_cli.radar.waveform import Waveform
+from radhar_cli.radar.fmcw import Waveform
 from radhar_cli.schema.number import support
 
 ENDS = ("carrier_hz", "bandwidth_hz", "chirp_s", "adc_rate_hz", "prf_hz", "duration_s")

@@ -3,8 +3,8 @@
 from collections.abc import Iterator
 from typing import cast
 
+from radhar_cli.config.first_level import Request
 from radhar_cli.config.image import MAX_SIDE_PX
-from radhar_cli.config.request import Request
 from radhar_cli.config.sequence import SequenceConfig
 from radhar_cli.config.stream import MIN_ZONE_M, StreamConfig, linked
 from radhar_cli.errors import did_you_mean

@@ -10,11 +10,11 @@ from radhar_cli.echo.paths import Paths, PathSource, Through
 from radhar_cli.motion.protocol import Motion
 from radhar_cli.motion.reflectors import Reflectors
 from radhar_cli.numerics.arrays import Float, Index
+from radhar_cli.radar.fmcw import SPEED_OF_LIGHT
 from radhar_cli.radar.person_shadow import BodyBox, field_behind_person, limit_shadow
 from radhar_cli.radar.propagation import Antennas, amplitude, bistatic_delay, leg
-from radhar_cli.radar.transmission import pass_wall, wall_delay
 from radhar_cli.radar.wall import Wall
-from radhar_cli.radar.waveform import SPEED_OF_LIGHT
+from radhar_cli.radar.wall_rays import pass_wall, wall_delay
 
 NEARBY_M = 1.0
 

@@ -39,11 +39,11 @@ from radhar_cli.radar.ellipsoid import (
     View,
     square_height,
 )
+from radhar_cli.radar.fmcw import SPEED_OF_LIGHT
 from radhar_cli.radar.propagation import Antennas, amplitude, leg
 from radhar_cli.radar.room import Point
-from radhar_cli.radar.transmission import pass_wall
 from radhar_cli.radar.wall import Wall
-from radhar_cli.radar.waveform import SPEED_OF_LIGHT
+from radhar_cli.radar.wall_rays import pass_wall
 
 REFLECTANCE = 0.5  # |Gamma|^2 of skin and clothes
 SCATTER = 0.02  # standard deviation across a segment, m; cut at twice that

@@ -21,11 +21,11 @@ from radhar_cli.echo.paths import Paths, Through
 from radhar_cli.motion.protocol import Motion, cached_result
 from radhar_cli.motion.segments import REFERENCE_STATURE, cross, soft_unit, unit
 from radhar_cli.numerics.arrays import Bool, Complex, Float, Index
+from radhar_cli.radar.fmcw import SPEED_OF_LIGHT
 from radhar_cli.radar.propagation import Antennas, amplitude, bistatic_delay, leg
 from radhar_cli.radar.room import Point
-from radhar_cli.radar.transmission import pass_wall
 from radhar_cli.radar.wall import Wall
-from radhar_cli.radar.waveform import SPEED_OF_LIGHT
+from radhar_cli.radar.wall_rays import pass_wall
 
 SPREAD = np.radians(59.0)
 DEPTH = 0.86

@@ -10,7 +10,7 @@ from radhar_cli.echo.receiver.impairment import Impairment
 from radhar_cli.echo.receiver.noise import circular_gaussian
 from radhar_cli.numerics.arrays import Complex, Float
 from radhar_cli.processing.look import Look
-from radhar_cli.radar.waveform import Waveform
+from radhar_cli.radar.fmcw import Waveform
 
 POLES_A_DECADE = 2
 

@@ -10,7 +10,7 @@ from radhar_cli.echo.receiver.impairment import Impairment
 from radhar_cli.numerics.arrays import Complex, Float, Index
 from radhar_cli.numerics.phasor import unit_phasor
 from radhar_cli.processing.look import Look
-from radhar_cli.radar.waveform import Waveform
+from radhar_cli.radar.fmcw import Waveform
 
 BATCH = 256  # switching times drawn at once
 

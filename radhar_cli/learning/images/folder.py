@@ -16,10 +16,10 @@ from radhar_cli.dataset.image_file import SUFFIXES, image_size, luminance, read_
 from radhar_cli.dataset.layout import CLASSES, CONFIG, PNG
 from radhar_cli.errors import FolderError
 from radhar_cli.files.untrusted import refuse_outside
-from radhar_cli.learning.choices import Kind
 from radhar_cli.learning.images.colour_maps import PICTURES_LOOKED_AT, colour_map_of, levels_behind
 from radhar_cli.learning.images.image_set import SPLIT_NAMES, ImageSet
 from radhar_cli.learning.images.sample_table import SampleTable, objects
+from radhar_cli.learning.registry import Kind
 from radhar_cli.numerics.arrays import Levels
 
 _WANTED = (

@@ -12,7 +12,6 @@ from radhar_cli.dataset.layout import Rows
 from radhar_cli.dataset.png import colour_table
 from radhar_cli.dataset.reading import Dataset, open_dataset
 from radhar_cli.dataset.recorded import windows
-from radhar_cli.learning.choices import Kind
 from radhar_cli.learning.images.image_set import ImageSet, Pixels
 from radhar_cli.learning.images.sample_table import Objects, SampleTable, objects
 from radhar_cli.learning.images.sequences import (
@@ -24,6 +23,7 @@ from radhar_cli.learning.images.sequences import (
     longest_sequence,
     sequence_product,
 )
+from radhar_cli.learning.registry import Kind
 from radhar_cli.learning.settings import Auto
 from radhar_cli.numerics.arrays import Levels
 

@@ -11,8 +11,8 @@ from PIL import Image
 from radhar_cli.dataset.layout import SPLITS
 from radhar_cli.dataset.split import TRAIN, VALIDATION
 from radhar_cli.errors import ConfigError, FolderError, did_you_mean
-from radhar_cli.learning.choices import Kind
 from radhar_cli.learning.images.sample_table import Objects, SampleTable, objects
+from radhar_cli.learning.registry import Kind
 from radhar_cli.numerics.arrays import Float, Index, Levels
 from radhar_cli.numerics.randomness import TRAINING, stream
 from radhar_cli.numerics.rounding import half_up

@@ -10,11 +10,11 @@ from radhar_cli.dataset.image_file import image_size
 from radhar_cli.dataset.layout import DATASET, SPLITS, is_incomplete
 from radhar_cli.dataset.radar_folders import describe_missing, refuse_several_radars
 from radhar_cli.errors import FolderError
-from radhar_cli.learning.choices import Kind, sequences_of
 from radhar_cli.learning.images.folder import FilePixels, open_tree
 from radhar_cli.learning.images.h5 import open_h5_images, open_h5_sequences
 from radhar_cli.learning.images.image_set import ImageSet, resized
 from radhar_cli.learning.images.windows import cut_windows
+from radhar_cli.learning.registry import Kind, sequences_of
 from radhar_cli.learning.run_files import is_run
 from radhar_cli.learning.settings import TrainConfig
 

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from radhar_cli.config.maps import FRAME_MAPS
 from radhar_cli.dataset.reading import Dataset, open_dataset
 from radhar_cli.errors import FolderError
-from radhar_cli.learning.choices import Kind
+from radhar_cli.learning.registry import Kind
 from radhar_cli.motion.skeleton import JOINTS
 from radhar_cli.numerics.arrays import Float, Index
 

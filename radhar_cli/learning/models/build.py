@@ -6,9 +6,9 @@ from typing import Any, Protocol
 import torch
 from torch import Tensor, nn
 
-from radhar_cli.learning.choices import NETWORKS, image_channels_of, load_place, sequences_of
 from radhar_cli.learning.models.outputs import Outputs
-from radhar_cli.learning.models.zoo import build_zoo_model
+from radhar_cli.learning.models.timm_networks import build_zoo_model
+from radhar_cli.learning.registry import NETWORKS, image_channels_of, load_place, sequences_of
 
 
 class Builder(Protocol):

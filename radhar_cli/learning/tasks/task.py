@@ -10,10 +10,10 @@ from torch import Tensor
 from radhar_cli.figures.report.parts import ReportFigure, ReportTable
 from radhar_cli.figures.report.report import Report
 from radhar_cli.learning.batches import Targets
-from radhar_cli.learning.choices import TASKS, load_place
 from radhar_cli.learning.images.image_set import ImageSet
 from radhar_cli.learning.intervals import Groups, numbers_of_share
 from radhar_cli.learning.models.outputs import Outputs
+from radhar_cli.learning.registry import TASKS, load_place
 from radhar_cli.learning.run_files import RunError
 from radhar_cli.learning.settings import TrainConfig
 from radhar_cli.learning.tasks.predictions import EvalOptions, Predictions

@@ -19,7 +19,7 @@ TILTED = 0.5  # most of that over the length of the stick (30 degrees)
 
 
 @dataclass(frozen=True)
-class Load:
+class HeldLoad:
     """Load before or beside the trunk: places of hands, seen from their shoulders.
 
     Lengths are in lengths of the stretched arm: ahead, outwards and up.
@@ -89,6 +89,6 @@ def hands_of_aid(aid: Aid, body: Physique, foot: Float | None, hip_ahead: Float)
     return np.array([np.stack([ahead, ahead]), beside + 0 * up, np.stack([up, up])])
 
 
-def elbow_directions(held: "Load | Aid") -> Float:
+def elbow_directions(held: "HeldLoad | Aid") -> Float:
     """Directions in which elbows of hands that hold something bend, in the trunk's axes [3, 2]."""
-    return DOWNWARDS if isinstance(held, Load) else UPWARDS
+    return DOWNWARDS if isinstance(held, HeldLoad) else UPWARDS

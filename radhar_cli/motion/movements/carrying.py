@@ -4,7 +4,7 @@ from dataclasses import replace
 from math import radians
 from typing import Annotated, Generic
 
-from radhar_cli.motion.human.aids import Load
+from radhar_cli.motion.human.aids import HeldLoad
 from radhar_cli.motion.movements.kind import MovementKind, Mover
 from radhar_cli.motion.movements.limping import draw_sides, slow_down
 from radhar_cli.motion.movements.walking import Gait, Walk, make_gait
@@ -29,7 +29,7 @@ class CarryingConfig(Section, Generic[B]):
 SECTION = CarryingConfig
 RIGHT, LEFT = 0, 1
 # Both hands below a box, and one beside the thigh with a bag, in lengths of the stretched arm.
-BOX = Load((RIGHT, LEFT), (0.48, -0.12, -0.62))
+BOX = HeldLoad((RIGHT, LEFT), (0.48, -0.12, -0.62))
 BAG = (0.02, 0.05, -0.98)
 LEAN_BACK = radians(4)  # of a person who carries a box
 
@@ -37,7 +37,7 @@ LEAN_BACK = radians(4)  # of a person who carries a box
 def carrying(gait: Gait, bag_side: int | None) -> Gait:
     """Gait with a box before the trunk, or a bag in the right (0) or left (1) hand."""
     if bag_side is not None:
-        return replace(gait, held=Load((bag_side,), BAG), name="carrying")
+        return replace(gait, held=HeldLoad((bag_side,), BAG), name="carrying")
     return replace(gait, trunk_pitch=gait.trunk_pitch - LEAN_BACK, held=BOX, name="carrying")
 
 

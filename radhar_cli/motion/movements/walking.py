@@ -12,7 +12,13 @@ from typing import Annotated, Generic, NamedTuple
 import numpy as np
 
 from radhar_cli.motion.human import boulic_thalmann as curves
-from radhar_cli.motion.human.aids import Aid, Load, elbow_directions, hands_of_aid, limit_to_reach
+from radhar_cli.motion.human.aids import (
+    Aid,
+    HeldLoad,
+    elbow_directions,
+    hands_of_aid,
+    limit_to_reach,
+)
 from radhar_cli.motion.human.arms import arm_directions_to_hands, hanging_hands
 from radhar_cli.motion.human.footsteps import Footfalls, FootTrack
 from radhar_cli.motion.human.idle import IdleState, Waves
@@ -210,7 +216,7 @@ class Gait:
     limp: float = 0.0
     limp_side: float = -1.0
     limp_lean: float = 0.0
-    held: Load | Aid | None = None  # what the hands hold, from where the walk begins to its end
+    held: HeldLoad | Aid | None = None  # what the hands hold, from where the walk begins to its end
     name: str = "walking"  # name of its phase
 
     def __post_init__(self) -> None:
@@ -808,7 +814,7 @@ class Walking:
         held, body = self.gait.held, self.person
         assert held is not None
         hands, poles = hanging_hands(body, *flexion)
-        if isinstance(held, Load):
+        if isinstance(held, HeldLoad):
             targets: Float = held.hands(body) + 0 * hands
         else:
             frame = np.array([trunk.ahead, trunk.left, trunk.up])

@@ -13,7 +13,7 @@ from radhar_cli.echo.knots import CHUNK_KNOTS, knots_of, widest_step
 from radhar_cli.echo.paths import Paths
 from radhar_cli.motion.protocol import Motion
 from radhar_cli.numerics.arrays import Float, Index
-from radhar_cli.radar.waveform import Waveform
+from radhar_cli.radar.fmcw import Waveform
 
 GRID_HZ = 50.0
 GRID_PER_CYCLE = 40

@@ -2,7 +2,7 @@
 
 from radhar_cli.config.data_set import Config
 from radhar_cli.config.radar import ArrayRadar, BoardRadar, Steps
-from radhar_cli.radar.waveform import SPEED_OF_LIGHT, Waveform
+from radhar_cli.radar.fmcw import SPEED_OF_LIGHT, Waveform
 from radhar_cli.scene.radar import waveform_of
 from radhar_cli.scene.scene import nominal_scene
 

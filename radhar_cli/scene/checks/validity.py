@@ -13,10 +13,10 @@ from radhar_cli.motion.human.two_link import OutOfReachError
 from radhar_cli.motion.protocol import Motion
 from radhar_cli.motion.segments import Landmarks
 from radhar_cli.numerics.arrays import Float, Index
+from radhar_cli.radar.fmcw import SPEED_OF_LIGHT, Waveform
 from radhar_cli.radar.propagation import Antennas, bistatic_delay, leg
 from radhar_cli.radar.room import Box
 from radhar_cli.radar.wall import Wall
-from radhar_cli.radar.waveform import SPEED_OF_LIGHT, Waveform
 from radhar_cli.scene.checks.check_grid import CheckGrid, check_grids
 from radhar_cli.scene.checks.flags import BEHIND_M, BODY_RADIUS_M, WORDING, Flags
 from radhar_cli.scene.checks.sweep import sweep_shift

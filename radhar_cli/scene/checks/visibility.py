@@ -23,10 +23,10 @@ from radhar_cli.numerics.arrays import Float
 from radhar_cli.processing.frame_maps import FRAME_MAP_KINDS
 from radhar_cli.processing.look import noise_gain, weights
 from radhar_cli.processing.map_kind import RTM, kind_of
+from radhar_cli.radar.fmcw import SPEED_OF_LIGHT, Waveform
 from radhar_cli.radar.impulse import Impulse
 from radhar_cli.radar.propagation import amplitude, leg
-from radhar_cli.radar.transmission import transmission
-from radhar_cli.radar.waveform import SPEED_OF_LIGHT, Waveform
+from radhar_cli.radar.wall_rays import transmission
 from radhar_cli.scene.checks.validity import MIN_DISTANCE_M
 from radhar_cli.scene.products.noise import noise_law_of
 from radhar_cli.scene.radar import antennas_of, board_of, waveform_of

@@ -9,9 +9,9 @@ from typing import NamedTuple
 
 import numpy as np
 
+from radhar_cli.config.cloud import CloudConfig
 from radhar_cli.config.data_set import AnyConfig, Config
 from radhar_cli.config.maps import FRAME_MAPS
-from radhar_cli.config.processing import CloudConfig
 from radhar_cli.config.radar import ArrayRadar, BoardRadar
 from radhar_cli.echo.accuracy import AccuracyError
 from radhar_cli.echo.board_cube import (

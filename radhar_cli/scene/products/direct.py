@@ -17,7 +17,7 @@ from radhar_cli.echo.receiver.impairment import Impairment
 from radhar_cli.numerics.arrays import Complex
 from radhar_cli.processing.canceller import Canceller, Fir
 from radhar_cli.processing.signal import Signal
-from radhar_cli.radar.waveform import Waveform
+from radhar_cli.radar.fmcw import Waveform
 from radhar_cli.scene.products.fallback import EchoAccuracy, fall_back
 from radhar_cli.scene.products.knot_rate import knot_rate_of
 from radhar_cli.scene.products.looks import look_at_profiles

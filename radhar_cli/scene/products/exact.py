@@ -14,7 +14,7 @@ from radhar_cli.processing.canceller import Canceller, Fir
 from radhar_cli.processing.gate import Gate
 from radhar_cli.processing.look import Look, RangeBins, RangeSum
 from radhar_cli.processing.signal import Signal
-from radhar_cli.radar.waveform import Waveform
+from radhar_cli.radar.fmcw import Waveform
 from radhar_cli.scene.products.looks import look_at_profiles, taps_before_range
 from radhar_cli.scene.products.plan import Product
 from radhar_cli.scene.products.receiver import name_of_impairments

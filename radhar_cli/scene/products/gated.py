@@ -18,7 +18,7 @@ from radhar_cli.processing.gate import Gate, around, interval
 from radhar_cli.processing.signal import Signal
 from radhar_cli.processing.stft import Stft
 from radhar_cli.processing.track import Track
-from radhar_cli.radar.waveform import SPEED_OF_LIGHT, Waveform
+from radhar_cli.radar.fmcw import SPEED_OF_LIGHT, Waveform
 from radhar_cli.scene.products.direct import compute_echo, receive_measured_echo
 from radhar_cli.scene.products.plan import Product
 from radhar_cli.scene.products.receiver import name_of_impairments

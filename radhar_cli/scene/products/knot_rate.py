@@ -10,7 +10,7 @@ from radhar_cli.echo.accuracy import first_aim, settings
 from radhar_cli.echo.direct import DirectEcho
 from radhar_cli.echo.gated import GatedEcho
 from radhar_cli.echo.paths import PathSource
-from radhar_cli.radar.waveform import Waveform
+from radhar_cli.radar.fmcw import Waveform
 
 # Knots per second of the echo of some paths; inf for every pulse.
 KnotRate: TypeAlias = Callable[[PathSource, Waveform], float]

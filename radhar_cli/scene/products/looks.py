@@ -5,7 +5,7 @@ from dataclasses import replace
 from radhar_cli.processing.canceller import Canceller, Fir, MeanRemoval
 from radhar_cli.processing.look import Look, RangeBins
 from radhar_cli.processing.signal import shown_pulses
-from radhar_cli.radar.waveform import Waveform
+from radhar_cli.radar.fmcw import Waveform
 
 
 def look_at_profiles(waveform: Waveform, canceller: Canceller, width: int) -> Look:

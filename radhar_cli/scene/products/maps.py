@@ -18,7 +18,7 @@ from radhar_cli.processing.map_kind import CADENCE_KINDS, RTM, MapKind, Transfor
 from radhar_cli.processing.power_map import Axis, MapImage, PowerMap
 from radhar_cli.processing.scale import Scale
 from radhar_cli.processing.signal import Signal
-from radhar_cli.radar.waveform import Waveform
+from radhar_cli.radar.fmcw import Waveform
 from radhar_cli.scene.products.images import (
     ImageForm,
     draw_doppler_image,

@@ -7,7 +7,7 @@ from radhar_cli.config.data_set import Config
 from radhar_cli.echo.receiver.noise import WhiteNoise
 from radhar_cli.echo.receiver.noise_law import NoiseLaw, Silent, Snr, Thermal
 from radhar_cli.errors import SceneError
-from radhar_cli.radar.waveform import Waveform
+from radhar_cli.radar.fmcw import Waveform
 from radhar_cli.scene.products.plan import Product
 from radhar_cli.scene.scene import Scene
 from radhar_cli.schema.number import nominal

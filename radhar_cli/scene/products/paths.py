@@ -11,9 +11,9 @@ from radhar_cli.echo.paths import PathSource
 from radhar_cli.motion.protocol import Motion
 from radhar_cli.motion.reflectors import Reflectors
 from radhar_cli.numerics.arrays import Float
+from radhar_cli.radar.fmcw import Waveform
 from radhar_cli.radar.propagation import Antennas
 from radhar_cli.radar.wall import Wall
-from radhar_cli.radar.waveform import Waveform
 from radhar_cli.scene.motion import moving
 from radhar_cli.scene.paths import Link, make_path_sources, sum_of_paths
 from radhar_cli.scene.products.knot_rate import KnotRate, knot_rate_of

@@ -9,8 +9,8 @@ from radhar_cli.echo.receiver.impairment import Impairment
 from radhar_cli.echo.receiver.interference import InterferenceLine
 from radhar_cli.echo.receiver.noise import WhiteNoise
 from radhar_cli.processing.canceller import Canceller
+from radhar_cli.radar.fmcw import Waveform
 from radhar_cli.radar.propagation import Antennas
-from radhar_cli.radar.waveform import Waveform
 from radhar_cli.scene.products.noise import noise_products
 from radhar_cli.scene.products.plan import Product
 from radhar_cli.scene.products.static_returns import add_static_returns

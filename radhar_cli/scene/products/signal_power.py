@@ -16,10 +16,10 @@ from radhar_cli.echo.impulse import impulse_power
 from radhar_cli.echo.knots import mean_power
 from radhar_cli.echo.paths import PathSource
 from radhar_cli.motion.protocol import Motion
+from radhar_cli.radar.fmcw import Waveform
 from radhar_cli.radar.impulse import Impulse
 from radhar_cli.radar.propagation import Antennas
 from radhar_cli.radar.wall import Wall
-from radhar_cli.radar.waveform import Waveform
 from radhar_cli.scene.paths import Link, sum_of_paths, trace_people
 from radhar_cli.scene.products.knot_rate import KnotRate
 from radhar_cli.scene.products.plan import Product

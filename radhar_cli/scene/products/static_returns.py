@@ -18,11 +18,11 @@ from radhar_cli.echo.static_returns import StaticReturn, leakage, near_face_dist
 from radhar_cli.errors import SceneError
 from radhar_cli.numerics.arrays import Complex, Float
 from radhar_cli.processing.look import Look
+from radhar_cli.radar.fmcw import Waveform
 from radhar_cli.radar.impulse import Impulse
 from radhar_cli.radar.layers import Layers
 from radhar_cli.radar.propagation import Antennas
 from radhar_cli.radar.wall import Wall
-from radhar_cli.radar.waveform import Waveform
 from radhar_cli.scene.room import echo_ways_of
 from radhar_cli.scene.scene import Scene
 

@@ -9,10 +9,10 @@ from radhar_cli.echo.paths import PathSource
 from radhar_cli.echo.receiver.impairment import Impairment
 from radhar_cli.numerics.arrays import Complex, Float
 from radhar_cli.processing.look import Look, ProfileSamples
+from radhar_cli.radar.fmcw import Waveform
 from radhar_cli.radar.impulse import Impulse
 from radhar_cli.radar.propagation import Antennas
 from radhar_cli.radar.wall import Wall
-from radhar_cli.radar.waveform import Waveform
 from radhar_cli.scene.products.plan import Product
 from radhar_cli.scene.products.signal import receive_echo
 from radhar_cli.scene.products.static_returns import make_static_returns

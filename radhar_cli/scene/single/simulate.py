@@ -18,9 +18,9 @@ from radhar_cli.processing.points import Cloud
 from radhar_cli.processing.power_map import PowerMap
 from radhar_cli.processing.signal import Signal, shown_pulses
 from radhar_cli.radar.board import Board
+from radhar_cli.radar.fmcw import Waveform
 from radhar_cli.radar.propagation import Antennas
 from radhar_cli.radar.wall import Wall
-from radhar_cli.radar.waveform import Waveform
 from radhar_cli.scene.checks.flags import BLACK
 from radhar_cli.scene.checks.warnings import scene_warnings
 from radhar_cli.scene.motion import aspect_of, motion_of

@@ -12,10 +12,10 @@ from radhar_cli.motion.phases import phase_numbers
 from radhar_cli.motion.protocol import Motion
 from radhar_cli.motion.recorded.motion import FileMotion
 from radhar_cli.numerics.arrays import Float, Index, Levels
+from radhar_cli.radar.fmcw import SPEED_OF_LIGHT, Waveform
 from radhar_cli.radar.propagation import Antennas
 from radhar_cli.radar.room import Leg, names_of
 from radhar_cli.radar.wall import Wall
-from radhar_cli.radar.waveform import SPEED_OF_LIGHT, Waveform
 from radhar_cli.scene.paths import OwnedPaths
 
 RATE_STEP_S = 1e-5

@@ -10,8 +10,8 @@ from radhar_cli.config.data_set import Config
 from radhar_cli.config.radar import ArrayRadar
 from radhar_cli.errors import RadharError
 from radhar_cli.processing.map_kind import Transform, kind_of
+from radhar_cli.radar.fmcw import SPEED_OF_LIGHT
 from radhar_cli.radar.propagation import bistatic_delay, leg
-from radhar_cli.radar.waveform import SPEED_OF_LIGHT
 from radhar_cli.scene.checks.validity import MIN_DISTANCE_M
 from radhar_cli.scene.motion import moving
 from radhar_cli.scene.radar import antennas_of, board_of, waveform_of

@@ -38,7 +38,7 @@ COLUMNS = (
 
 
 @dataclass(frozen=True)
-class TradeoffReport:
+class TradeoffFiles:
     """Files of a sweep in a folder."""
 
     folder: Path

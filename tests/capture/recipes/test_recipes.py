@@ -339,7 +339,7 @@ def write(path, label, person, out):
     write_clips(out, [clip], 0.1, [path])
 
 
-RECIPE = SetRecipe("us", "mit", "two classes", "itself", "walking_anna.csv", list_takes, CLOUDS)
+RECIPE = SetRecipe("us", "mit", "two classes", "itself", "walking_anna.csv", CLOUDS, list_takes)
 """
 
 

@@ -28,9 +28,9 @@ from radhar_cli.motion.segments import SEGMENTS, Segment, segments_between
 from radhar_cli.motion.skeleton import JOINTS
 from radhar_cli.numerics.accelerators import installed
 from radhar_cli.numerics.arrays import Float
+from radhar_cli.radar.fmcw import SPEED_OF_LIGHT
 from radhar_cli.radar.propagation import Aim, Antennas, boresight_axes
 from radhar_cli.radar.wall import Wall
-from radhar_cli.radar.waveform import SPEED_OF_LIGHT
 from radhar_cli.scene.checks.warnings import scene_warnings
 from radhar_cli.scene.motion import motion_of
 from radhar_cli.scene.paths import Link, make_body_paths

@@ -17,7 +17,7 @@ from radhar_cli.numerics.randomness import NOISE, stream
 from radhar_cli.processing import look as look_module
 from radhar_cli.processing.canceller import Fir
 from radhar_cli.processing.look import FastTime, Look, RangeBins, RangeSum, RawSamples
-from radhar_cli.radar.waveform import Waveform
+from radhar_cli.radar.fmcw import Waveform
 from radhar_cli.scene.products.run import record
 from radhar_cli.scene.scene import Scene, draw_scene, scene_numbers
 

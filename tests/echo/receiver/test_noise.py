@@ -24,7 +24,7 @@ from radhar_cli.processing.look import (
     RangeSum,
     RawSamples,
 )
-from radhar_cli.radar.waveform import Waveform
+from radhar_cli.radar.fmcw import Waveform
 from radhar_cli.scene.motion import motion_of
 from radhar_cli.scene.products.run import Results, run
 from radhar_cli.scene.products.run import record as record_scene

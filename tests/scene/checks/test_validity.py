@@ -18,8 +18,8 @@ from radhar_cli.motion.activities.activity import ACTIVITIES, activity_named
 from radhar_cli.motion.human.motion import HumanMotion
 from radhar_cli.motion.skeleton import JOINTS
 from radhar_cli.numerics.arrays import Float
+from radhar_cli.radar.fmcw import Waveform
 from radhar_cli.radar.wall import crossing, extra_delay
-from radhar_cli.radar.waveform import Waveform
 from radhar_cli.scene.checks import drawing
 from radhar_cli.scene.checks.check_grid import check_grids
 from radhar_cli.scene.checks.drawing import draw_valid_scene

@@ -12,15 +12,15 @@ from radhar_cli.echo.paths import Paths
 from radhar_cli.echo.receiver.impairment import Impairment
 from radhar_cli.errors import SceneError
 from radhar_cli.processing.canceller import FIRST_DIFFERENCE, NO_CANCELLER, MeanRemoval
-from radhar_cli.processing.cfar import CellAveraging
+from radhar_cli.processing.cfar_mask import CellAveraging
 from radhar_cli.processing.doppler_power import compute_fsst_power, compute_stft_power
 from radhar_cli.processing.frames import Frames
 from radhar_cli.processing.look import Look, RangeSum
 from radhar_cli.processing.scale import CfarMask, DecibelScale
 from radhar_cli.processing.signal import Signal
+from radhar_cli.radar.fmcw import SPEED_OF_LIGHT, Waveform
 from radhar_cli.radar.impulse import Impulse
 from radhar_cli.radar.pulse_times import PulseTimes
-from radhar_cli.radar.waveform import SPEED_OF_LIGHT, Waveform
 from radhar_cli.scene.products.exact import compute_beat_signals, compute_gate_bins
 from radhar_cli.scene.products.fallback import Fallback, fall_back
 from radhar_cli.scene.products.gated import (

@@ -16,7 +16,7 @@ from radhar_cli.motion.activities.activity import activity_named
 from radhar_cli.processing.canceller import MeanRemoval
 from radhar_cli.processing.look import Look, RangeBins, RangeSum, noise_gain
 from radhar_cli.radar.chirp_window import ChirpWindow, WindowName
-from radhar_cli.radar.waveform import Waveform
+from radhar_cli.radar.fmcw import Waveform
 from radhar_cli.scene.checks.visibility import cell_gain_db
 from radhar_cli.scene.products.run import Results, record
 from radhar_cli.scene.scene import draw_scene

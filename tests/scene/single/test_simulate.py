@@ -11,7 +11,7 @@ from radhar_cli.config import MAP_NAMES, Config, load_config
 from radhar_cli.errors import ConfigError, SceneError
 from radhar_cli.motion.activities.activity import activity_named
 from radhar_cli.motion.skeleton import JOINTS
-from radhar_cli.radar.waveform import SPEED_OF_LIGHT
+from radhar_cli.radar.fmcw import SPEED_OF_LIGHT
 from radhar_cli.scene.checks.drawing import draw_valid_scene
 from radhar_cli.scene.products.run import record
 from radhar_cli.scene.scene import draw_scene

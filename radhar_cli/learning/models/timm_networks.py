@@ -8,7 +8,7 @@ from torch import nn
 from torch.library import Library
 
 from radhar_cli.errors import ModelError, did_you_mean, how_to_install
-from radhar_cli.learning.choices import NETWORKS, sequences_of
+from radhar_cli.learning.registry import NETWORKS, sequences_of
 
 _OPERATORS: Any = Library("torchvision", "FRAGMENT")  # type: ignore[no-untyped-call]  # forgets what it defines when it is let go
 

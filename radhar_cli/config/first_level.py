@@ -17,13 +17,14 @@ from radhar_cli.config.classes import (
     class_activities,
     movement_class,
 )
+from radhar_cli.config.cloud import CloudConfig
 from radhar_cli.config.engine import EngineConfig
 from radhar_cli.config.image import ImageConfig
 from radhar_cli.config.maps import CADENCE_MAPS, FRAME_MAPS, MAP_NAMES, OF_FRAMES, OF_POINTS, Maps
 from radhar_cli.config.motion import MotionConfig, TimingConfig
 from radhar_cli.config.output import OutputConfig, SplitConfig
 from radhar_cli.config.people import BodyConfig, OneOf, PersonConfig, SubjectConfig
-from radhar_cli.config.processing import PAPER_WINDOW, CloudConfig, ProcessingConfig
+from radhar_cli.config.processing import PAPER_WINDOW, ProcessingConfig
 from radhar_cli.config.radar import ArrayRadar, FmcwRadar, Radar
 from radhar_cli.config.range_zone import range_zone
 from radhar_cli.config.receiver import ReceiverConfig

@@ -6,7 +6,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
-from radhar_cli.processing.cfar import CellAveraging, decibels_of, false_alarm_factor
+from radhar_cli.processing.cfar_mask import CellAveraging, decibels_of, false_alarm_factor
 
 PAIR = st.tuples(st.integers(0, 4), st.integers(0, 4))
 CELLS = arrays(

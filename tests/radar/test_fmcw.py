@@ -14,7 +14,7 @@ from radhar_cli.config.reading import validated
 from radhar_cli.echo.beat import beat_matrix
 from radhar_cli.echo.bodies.motion_paths import MotionPaths
 from radhar_cli.errors import ConfigError
-from radhar_cli.radar.waveform import SPEED_OF_LIGHT, Waveform
+from radhar_cli.radar.fmcw import SPEED_OF_LIGHT, Waveform
 from radhar_cli.scene.radar import waveform_of
 from radhar_cli.scene.scene import nominal_scene
 from radhar_cli.scene.single.simulate import simulate

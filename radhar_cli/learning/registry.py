@@ -3,7 +3,7 @@
 A network or a task is a file of its own, which is imported when a config names it, so that a
 config is read without PyTorch. A module of RADHAR_EXTENSIONS adds a line of its own:
 
-    from radhar_cli.learning.choices import NETWORKS, TASKS, NetworkChoice, TaskChoice
+    from radhar_cli.learning.registry import NETWORKS, TASKS, NetworkChoice, TaskChoice
 
     NETWORKS["mynet"] = NetworkChoice("my_radar.mynet:build")
     TASKS["height"] = TaskChoice("my_radar.height:Height")

@@ -65,10 +65,10 @@ def open_capture(files: CaptureFiles) -> Source:
 
 def _unpack(files: CaptureFiles, path: Path) -> list[Path]:
     """Unpack a file of a capture if it is compressed as a whole; return the paths to read."""
-    place = files.scratch / f"unpacked{files.paths.index(path)}"
+    place, head = files.scratch / f"unpacked{files.paths.index(path)}", _head_of(path)
     if path.suffix.lower() == ".zip":
         return unpack_zip(path, place)
-    return [unpack_file(path, _head_of(path), place)]
+    return [unpack_file(path, head, place)]
 
 
 def _head_of(path: Path) -> bytes:

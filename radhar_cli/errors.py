@@ -29,7 +29,7 @@ def how_to_install(*modules: str) -> str:
 
 
 def describe_schema(version: int, known: int, otherwise: str = "") -> str:
-    """Say what is wrong with the version of a file's layout, and what would be right.
+    """Describe the problem with the version of a file's layout, and the version that is right.
 
     Args:
         version: the file's.

@@ -1,4 +1,4 @@
-"""What a user adds: products of their own, in the plan of every scene and data set.
+"""Extensions of a user: products of their own, in the plan of every scene and data set.
 
     from radhar_cli.extensions import add_product
 

@@ -127,7 +127,7 @@ def _board(recording: Recording, config: AnyConfig) -> Board:
 
 
 def _describe_difference(recording: Recording, board: Board) -> str | None:
-    """Say in what the content of a recording differs from that of a board; None if it does not."""
+    """Describe the difference of a recording's content from that of a board; None without one."""
     content = recording.info.content
     if board.samples == 1:
         return describe_difference(content, SlowTime(board.carrier_hz, board.prf_hz))

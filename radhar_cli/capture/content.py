@@ -1,4 +1,4 @@
-"""What the samples of a recording are: beat signals of chirps, range profiles, or slow time."""
+"""Content of a recording's samples: beat signals of chirps, range profiles, or slow time."""
 
 from dataclasses import asdict, dataclass, replace
 from typing import Any, ClassVar, Self, TypeAlias
@@ -150,7 +150,7 @@ def numbers_of(content: Content) -> dict[str, Any]:
 def describe_difference(
     content: Content, expected: Content, tolerance: float = TOLERANCE
 ) -> str | None:
-    """Say in what a content differs from another of the same radar, or return None.
+    """Describe the first difference of a content from another of the same radar; None without one.
 
     The text is such as "prf_hz = 200: should be 256".
 
@@ -173,7 +173,7 @@ def describe_difference(
 def describe_other_chirps(
     content: Content, expected: Content, tolerance: float = TOLERANCE
 ) -> str | None:
-    """Say in what a content differs from another, in whichever half of the band echoes lie.
+    """Describe a difference of contents, in whichever half of the band echoes lie; or return None.
 
     Args:
         content: content of a recording.

@@ -29,7 +29,7 @@ def probe(source: Source) -> list[Parts]:
 
 
 class Coding(NamedTuple):
-    """How whole numbers encode signed samples."""
+    """Encoding of signed samples as whole numbers."""
 
     words: bool  # whether they are words of 16 bits, read as signed or unsigned
     offset: int = 0  # of offset binary; 0 of two's complement

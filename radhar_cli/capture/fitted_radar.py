@@ -119,7 +119,7 @@ def radar_of_recording(recording: Recording, overrides: Sequence[str] = ()) -> d
 
 
 def differing_key(section: Any, other: Any, key: str = "radar") -> str | None:
-    """Say which key of a section differs from that of another by more than TOLERANCE, or None."""
+    """Describe the first key that differs from another section by more than TOLERANCE, or None."""
     if isinstance(section, dict) and isinstance(other, dict):
         keys = [*dict.fromkeys([*section, *other])]
         pairs = [(section.get(name), other.get(name), f"{key}.{name}") for name in keys]
@@ -199,7 +199,7 @@ def chirps_of_frames(recording: Recording) -> int:
 
 
 def describe_chosen_frames(recording: Recording, section: Mapping[str, Any]) -> str | None:
-    """Say which frames were chosen for a recording that tells none, and why; None if none were.
+    """Describe the frames chosen for a recording that has none, with the reason; None if none were.
 
     Args:
         recording: the recording.
@@ -244,7 +244,7 @@ def _frame_keys(
 
 
 def _why_frames(recording: Recording, content: Beat, turns: int) -> str | None:
-    """Say why a plain radar of chirps is not that of a recording; None if it is."""
+    """Return the reason why a plain radar of chirps does not fit a recording; None if it fits."""
     receivers = recording.info.receivers
     if turns > 1:
         return f"has {turns} transmitters that take turns"

@@ -370,7 +370,7 @@ def _as_numbers(label: NDArray[Any]) -> NDArray[Any]:
 
 
 def _describe_numbers(path: Path, name: str, label: NDArray[Any]) -> str:
-    """Say what numbers without names of classes need, with a command that adds them."""
+    """Describe labels that should be indices into classes, with a command that adds the names."""
     return (
         f"{name} has the numbers {label.min()} to {label.max()}; should be indices into classes, "
         f"or texts; `python -c \"import numpy as np; np.savez('named.npz', **np.load('{path}'), "
@@ -379,7 +379,7 @@ def _describe_numbers(path: Path, name: str, label: NDArray[Any]) -> str:
 
 
 def _describe_one_hot(path: Path, name: str, label: NDArray[Any], has_classes: bool) -> str:
-    """Say what one-hot labels [N, K] should be, with a command that makes them so."""
+    """Describe one-hot labels [N, K] that should be indices, with a command that makes them so."""
     classes = "" if has_classes else f", {_example_classes(label.shape[1])}"
     return (
         f'{name} is one-hot; should be np.argmax({name}, 1); `python -c "import numpy as np; a = '

@@ -335,7 +335,7 @@ def _info(
 
 
 def _radar_note(s: CaptureSettings, content: Content) -> dict[str, Any]:
-    """What the header says of the radar, by keys of a config; frames even where they are joined."""
+    """Return the header's keys of the radar, as in a config; frames even where they are joined."""
     note = dict(s.radar or {})
     if (
         not isinstance(content, RangeProfiles)

@@ -39,7 +39,7 @@ RATIOS = ("people", "3d tracking", "vital")  # words of demos whose SNR is a rat
 
 
 class PointSettings(Section):
-    """What a dump of points does not say itself; None is unknown."""
+    """Facts that a dump of points does not state; None is unknown."""
 
     frame_s: Annotated[Above, Field(ge=1e-5, le=1e6)] | None = None  # from frame to frame
     doppler_step_mps: Above | None = None  # of a bin of Doppler, of SDK 1 and 2
@@ -189,7 +189,7 @@ def _draft_of(
     demo: str,
     findings: Callable[[], Sequence[str]],
 ) -> PointRecordingDraft:
-    """What is known of a recording before its frames are read."""
+    """Make the draft of a recording, before its frames are read."""
     s = header.settings
     source = SourceNote(format="points", files=[path.name for path in paths[:1000]])
     labels = [] if s.label is None else [Label(label=s.label, person=s.person)]
@@ -306,7 +306,7 @@ class DumpFrames:
         return frame._replace(track=tracks_of(tracks))
 
     def findings(self) -> list[str]:
-        """Say what was left out, in words."""
+        """List the damage, misfits and other subframes that were left out, a sentence for each."""
         sentences = self.dump.damage.findings()
         if self.misfits:
             sentences.append(

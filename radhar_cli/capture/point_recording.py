@@ -85,7 +85,7 @@ class FrameClock:
         return self.places[-1] + 1 - len(self.places) if self.places else 0
 
     def findings(self) -> list[str]:
-        """Say what is odd with the numbers, in words."""
+        """List the lost, repeated and restarted frame numbers, a sentence for each."""
         sentences = []
         if self.lost:
             total = self.places[-1] + 1
@@ -144,7 +144,7 @@ def write_point_recording(
 
 @dataclass(frozen=True)
 class PointRecordingDraft:
-    """What is known of a recording beside its frames.
+    """Facts of a recording that do not come from its frames.
 
     Attributes:
         frame_s: Time from frame to frame, s.

@@ -196,7 +196,7 @@ def _reserve(preparation: Preparation, out: Path, overwrite: bool) -> None:
 
 
 def _describe_origin(stored: Any) -> str:
-    """Say which download recordings were made of."""
+    """Describe the download that recordings were made of: its recipe, folder and settings."""
     if not isinstance(stored, dict):
         return "another download"
     return f"{stored.get('recipe')}, {stored.get('folder')}, {stored.get('settings')}"

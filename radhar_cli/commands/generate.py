@@ -124,7 +124,7 @@ def generate(
 
 @dataclass(frozen=True)
 class Work:
-    """How data sets are built, and by whom.
+    """Workers, batches and source of rows of a build of data sets.
 
     Attributes:
         jobs: number of worker processes; None for as many as pay.

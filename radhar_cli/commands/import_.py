@@ -203,7 +203,7 @@ def _import_samples(
 
 
 def _tell_recording(info: "RecordingInfo") -> dict[str, object]:
-    """Say what was found in the samples of a recording; return it by key."""
+    """Print the findings in the samples of a recording; return them by key."""
     from radhar_cli.capture.content import SlowTime
 
     for line in info.source.findings:

@@ -64,7 +64,7 @@ def _refuse_unfinished(folders: list[Path]) -> None:
 
 
 def _tell_of_other_scenes(folders: list[Path]) -> list[str]:
-    """Say whether the data sets of several radars are of the same scenes; return what differs."""
+    """Print whether the data sets of several radars are of the same scenes; return what differs."""
     from radhar_cli.dataset.reading import open_dataset
     from radhar_cli.dataset.same_scenes import differing_columns
 
@@ -112,7 +112,7 @@ def _is_sound(out: Path, samples: int, motion: Path | None) -> bool:
 
 
 def _leak_in_words(out: Path) -> str:
-    """Say what tells the classes besides the movement, in a line, and which command says more."""
+    """Describe in a line the clues to the class besides the movement, and the command for more."""
     from radhar_cli.config.class_laws import laws_by_class
     from radhar_cli.config.data_set import Config
     from radhar_cli.dataset.audited import audit_folder, read_audit

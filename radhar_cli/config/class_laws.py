@@ -40,7 +40,7 @@ def is_of_movement(key: str) -> bool:
 
 
 def laws_by_class(config: Config) -> list[str]:
-    """Say which numbers that are not the movement have laws of their own for some classes."""
+    """Warn of numbers beside the movement that some classes draw by a law of their own."""
     lines = []
     for key, number in _numbers_by_activity(config, ""):
         if is_of_movement(key):

@@ -71,7 +71,7 @@ class FilesConfig(Section, Generic[N]):
     """Path of the hips: as the file says, or as the foot on the floor tells, where poses are
     relative to the hips (MediaPipe's world landmarks, Human3.6M)."""
     past_end: Literal["rest", "loop"] = "rest"
-    """What people do where a file is shorter than the recording: they come to rest, or go on in a
+    """Motion of people where a file is shorter than the recording: they come to rest, or go on in a
     loop."""
     file: Annotated[int, Field(ge=0, strict=True)] | None = None
     """Number of the one file that is used, from 0; null draws one."""

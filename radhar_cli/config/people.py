@@ -70,14 +70,14 @@ _SEGMENTS = NeedsKey("body.scatterers", "segments")
 
 
 class BodyConfig(Section):
-    """What of a person scatters: the joints as points, or the segments between them.
+    """Scatterers of a person: the joints as points, or the segments between them.
 
     `segments` are ellipsoids of `points_per_segment` points at most; how many a recording needs
     follows from its speeds, window and wavelength (docs/physics/bodies.md).
     """
 
     scatterers: Literal["points", "segments", "surfaces"] = "points"
-    """What scatters: the 13 joints, ellipsoids between them, or surfaces that face the radar."""
+    """Scatterers: the 13 joints, ellipsoids between them, or surfaces that face the radar."""
     points_per_segment: Annotated[
         int, Field(ge=1, le=1000, strict=True), NeedsKey("body.scatterers", "segments", "surfaces")
     ] = 20

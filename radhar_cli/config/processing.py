@@ -87,12 +87,12 @@ class ProcessingConfig(Section):
         HighpassConfig
     )
     range_sum: Annotated[Literal["coherent", "gated"], SPECTRA] = "coherent"
-    """What Doppler maps show: the coherent sum of the kept bins, or STFTs of those in the gate,
-    summed incoherently."""
+    """Sum over range of Doppler maps: the coherent sum of the kept bins, or STFTs of those in the
+    gate, summed incoherently."""
     gate_m: Annotated[float | tuple[float, float], _GATED] = 1.0
     """Reach of the gate to both sides of the torso, m, or [from, to]: fixed ranges."""
     gate_sum: Annotated[Literal["power", "magnitude"], _GATED] = "power"
-    """How the gate's bins are added up: their powers, or (sum of the magnitudes)^2."""
+    """Sum of the gate's bins: their powers, or (sum of the magnitudes)^2."""
     range_fft_length: Annotated[
         Annotated[int, Field(ge=2, multiple_of=2, strict=True)] | None, NO_BOARD
     ] = None
@@ -191,7 +191,7 @@ class ProcessingConfig(Section):
 
 
 class CloudConfig(Section):
-    """How points are found in the frames of a board (docs/guide/boards.md)."""
+    """Detection of points in the frames of a board (docs/guide/boards.md)."""
 
     chain: Chain = "best"
     """Detection chain: best is what the data allow, the others what TI's firmware does with the

@@ -1,4 +1,4 @@
-"""Where people can be, by what a config draws: the range axis that images have by default."""
+"""Ranges at which a config places people: the range axis that images have by default."""
 
 from collections.abc import Iterable, Iterator
 from contextlib import suppress

@@ -188,7 +188,7 @@ def load_config(
 
 
 def ask_for_one_radar(names: Iterable[str]) -> str:
-    """Say that several radars are given where one is needed, and how one is chosen."""
+    """Describe the choice of one of several radars, where one is needed."""
     *earlier, last = names
     return (
         f"has several radars, {', '.join(earlier)} and {last}; should be one here: "
@@ -664,7 +664,7 @@ def _our_word(names: list[int | str], item: Any) -> str | None:
 
 
 def _advice_on_frequency(names: list[int | str], item: Any) -> str:
-    """Say that a frequency below its least one is in Hz, where it may have been in GHz or MHz."""
+    """Return the advice that a frequency below its least one is in Hz, not in GHz or MHz; or ""."""
     key, value = ".".join(str(name) for name in names), item["input"]
     least = item.get("ctx", {}).get("ge")
     if item["type"] != "greater_than_equal" or unit_of(key) != "hz" or not 0 < value < least:
@@ -802,7 +802,7 @@ def _paths_of_groups(section: type[BaseModel]) -> dict[str, list[str]]:
 
 
 def _why_of_another(kind: type[BaseModel], key: str) -> str | None:
-    """Say which other radars have a key that this kind does not know; None if none has it."""
+    """Describe the radars that have a key which this kind does not know; None if none has it."""
     if not issubclass(kind, AnyRadar):
         return None
     if key == "frame" and not issubclass(kind, ArrayRadar):
@@ -862,7 +862,7 @@ def _value_and_advice(problem: Problem) -> str:
 
 
 def _advice_on_unit(problem: Problem) -> str:
-    """Say what a number beyond its range would be in our unit, where another unit explains it."""
+    """Return the advice which unit would bring a number into its range; "" where none does."""
     reach = re.match(r"should be from (\S+) to (\S+)", problem.right)
     value = problem.value
     if isinstance(value, dict) and len(value) == 1:  # a distribution

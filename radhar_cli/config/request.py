@@ -131,7 +131,7 @@ class Request(Section):
         Literal["keep", "redraw", "error"] | None,
         ByModel(human="redraw", paper="keep", file="redraw"),
     ] = None
-    """What happens to a scene in which a body meets the wall or a scatterer leaves the range
+    """Treatment of a scene in which a body meets the wall or a scatterer leaves the range
     half-band. A scene in which one comes within 5 cm of an antenna is drawn again with `redraw`,
     and refused otherwise."""
     processing: ProcessingConfig = defaults_of(ProcessingConfig)
@@ -150,7 +150,7 @@ class Request(Section):
     _other_words: dict[str, str] = {}  # {word of the file: our name of the same meaning}
 
     recordings: RecordingsConfig | None = None
-    """How `radhar generate --recordings` cuts recordings into samples: see
+    """Division of recordings into samples by `radhar generate --recordings`: see
     docs/guide/measured.md."""
 
     @field_validator("activities", mode="before")
@@ -345,7 +345,7 @@ class Request(Section):
         return self.model_copy(update={**sections, "classes": classes, "stream": stream})
 
     def activities_of(self, number: int) -> tuple[Activity, ...]:
-        """What one of `people` may do.
+        """List the activities that one of `people` may do.
 
         Raises:
             ValueError: there is no such activity.
@@ -367,13 +367,13 @@ class Request(Section):
         return person.model_copy(update=changed)
 
     def _doing_of(self, number: int) -> str | OneOf:
-        """What one of `people` does, by our names where other words were used."""
+        """Return the activity of one of `people`, by our names where other words were used."""
         person = self.people[number - 1]
         names = [self._other_words.get(name, name) for name in person.names]
         return names[0] if isinstance(person.activity, str) else OneOf(choice=tuple(names))
 
     def samples_of(self, activity: Activity) -> int:
-        """How many samples of an activity there are."""
+        """Count the samples of an activity."""
         if self.stream is not None and activity.slug == STREAM:
             return self.stream.count
         samples: int = for_activity(self.samples_per_class, activity)
@@ -511,7 +511,7 @@ class MeasuredRequest(Section):
         return (*of_frames, *OF_POINTS, *joints) if "points" in self.maps else of_frames
 
     def samples_of(self, activity: Activity) -> int:
-        """How many windows of an activity there are."""
+        """Count the windows of an activity."""
         return self.recordings.counts.get(activity.slug, 0)
 
     @cached_property

@@ -194,7 +194,7 @@ def _aspect_problems(
 
 
 def _aspect_of(entry: Mapping[str, Any], shared: Mapping[str, Any]) -> Mapping[str, Any] | None:
-    """What an entry says of its aspect over what all radars have; None without, or where null."""
+    """Return an entry's aspect over that of all radars; None without one, or where it is null."""
     if entry.get(ASPECT, shared.get(ASPECT)) is None:
         return None
     return {**_mapping(shared.get(ASPECT)), **_mapping(entry.get(ASPECT))}

@@ -129,7 +129,7 @@ class StreamChance(Chance, Protocol):
 
 @dataclass(frozen=True)
 class _Bout:
-    """What an activity consists of in one bout."""
+    """Movements of an activity in one bout."""
 
     names: tuple[str, ...]
     durations: tuple[Number | None, ...]  # those that its own class says

@@ -1,4 +1,4 @@
-"""What a worker does: synthesise consecutive rows, write their PNGs, then their shard."""
+"""Batches of a worker: synthesis of consecutive rows, their PNGs, then their shard."""
 
 import os
 import platform

@@ -1,4 +1,4 @@
-"""What identifies code that a user added: the files it is written in, and the numbers it holds.
+"""Identity of code that a user added: the files it is written in, and the numbers it holds.
 
 Two versions of a function should have two digests, also where the change lies in a function that it
 calls, in another file of the user's, or in the arguments of a partial function. Installed packages
@@ -101,7 +101,7 @@ class _Reader:
 
 
 def _state(value: Any) -> Any:
-    """What an object holds; a data class's fields alone, beside which caches may lie."""
+    """Return the state of an object; of a data class the fields alone, without caches."""
     if is_dataclass(value) and not isinstance(value, type):
         return {field.name: getattr(value, field.name, None) for field in fields(value)}
     return vars(value)

@@ -65,7 +65,7 @@ class Estimate:
 
 @dataclass(frozen=True)
 class AtLeast:
-    """What is known of the cost of a build where no sample was finished in time."""
+    """Least cost of a build of which no sample was finished in time."""
 
     samples: int  # in the data set
     seconds_range: tuple[float, float]  # of the wall time: from some time on

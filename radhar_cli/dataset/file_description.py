@@ -1,4 +1,4 @@
-"""What dataset.h5 says of itself: labels, splits and keys, and the attributes of all datasets."""
+"""Metadata within dataset.h5: labels, splits and keys, and the attributes of all datasets."""
 
 import json
 from typing import Any
@@ -107,7 +107,7 @@ def _describe_map(file: h5py.File, config: AnyConfig, name: str) -> None:
 
 
 def describe_levels(image: ImageConfig, white: str = "level 255", black: str = "level 0") -> str:
-    """Say which powers the brightest and the darkest level of decibels are.
+    """Describe the powers at the brightest and the darkest level of decibels.
 
     Args:
         image: section `image` of the config.

@@ -119,7 +119,7 @@ def _open_image(
 
 
 def _header_problem(image: Image.Image, size: tuple[int, int] | None) -> str | None:
-    """Say what is wrong with the size or the mode of an image; None if nothing is."""
+    """Describe the problem with the size or the mode of an image; None without one."""
     height, width = image.height, image.width
     if size is not None and (height, width) != size:
         return (

@@ -86,7 +86,7 @@ def folder_of_all_radars(folder: Path) -> Path:
 
 
 def describe_missing(path: Path, otherwise: str = "no such file or folder") -> str:
-    """Say that the data set of one of several radars is not made yet, and what makes it.
+    """Describe the missing data set of one of several radars, with the command that makes it.
 
     Args:
         path: path of nothing.

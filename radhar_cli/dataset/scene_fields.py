@@ -111,7 +111,7 @@ def values(scene: Scene, columns: tuple[Field, ...], error_db: float = nan) -> F
 
 
 def movement_onset(scene: Scene) -> float:
-    """When that begins which a scene's class is named by, s; NaN where no model says so.
+    """Return the time at which the movement begins that names a scene's class, s; or NaN.
 
     It is below 0 where the movement is under way as the recording begins.
     """

@@ -48,7 +48,7 @@ class TrialSample(NamedTuple):
 
 
 class _Preparations(NamedTuple):
-    """What a process makes once for all samples of a batch."""
+    """Objects that a process makes once for all samples of a batch."""
 
     config: Config
     plan: Plan

@@ -264,7 +264,7 @@ class _SampleComparison:
             self._say(f"/entropy/{name}[{row}]: {entropy}, not {image.entropy}")
 
     def _tolerance(self, rounding: float) -> float:
-        """What of a difference is tolerated: that of rounding under other versions, else none."""
+        """Return the tolerance of a difference: that of rounding under other versions, else 0."""
         return 0.0 if self._is_bitwise else rounding
 
 

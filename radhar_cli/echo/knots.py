@@ -82,7 +82,7 @@ class Knots(NamedTuple):
 
 
 class Spacing(NamedTuple):
-    """How close knots must be.
+    """Density of the knots that an accuracy needs.
 
     There are `per_second`, or more, so that from one to the next an amplitude changes by at most
     `amplitude_change` of itself, or of its usual size where it passes zero, and G's fastest
@@ -95,7 +95,7 @@ class Spacing(NamedTuple):
 
 
 class Roughness(NamedTuple):
-    """How large the squared error of interpolation is in each segment of pulses."""
+    """Squared error of interpolation in each segment of pulses."""
 
     step: int  # number of pulses of a segment
     squares: Float  # up to a factor [segments]; empty where nothing is interpolated

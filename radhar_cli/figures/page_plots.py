@@ -36,7 +36,7 @@ class PointFrames(NamedTuple):
 
 @dataclass(frozen=True)
 class LevelScale:
-    """What the 255 levels of a map stand for, and its colours."""
+    """Values and colours of the 255 levels of a map."""
 
     low: float  # value of level 0
     high: float  # value of level 255

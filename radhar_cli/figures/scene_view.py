@@ -1,4 +1,4 @@
-"""What the page of a scene shows besides maps: skeletons in motion, true Doppler, the radar."""
+"""Parts of the page of a scene besides maps: skeletons in motion, true Doppler, the radar."""
 
 from collections.abc import Mapping, Sequence
 from typing import Any, NamedTuple

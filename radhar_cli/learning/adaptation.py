@@ -72,7 +72,7 @@ class Mixed:
 
 @dataclass(frozen=True)
 class AdaptOptions:
-    """How a run is adapted."""
+    """Options of the adaptation of a run."""
 
     map: str | None = None  # of a data set; None is the one of the training
     split: str = "all"  # of the images, where they have any

@@ -77,7 +77,7 @@ def epoch_batches(order: Index, size: int) -> list[Index]:
 
 
 class Targets(Protocol):
-    """What is to be learned of every row of a set: a number, or an array."""
+    """Targets to be learned, a number or an array for every row of a set."""
 
     def __getitem__(self, row: int, /) -> ArrayLike: ...
 

@@ -40,7 +40,7 @@ def wilson(correct: float, count: float) -> tuple[float, float]:
 
 @dataclass(frozen=True)
 class Groups:
-    """What of some samples varies together."""
+    """Groups of samples that vary together."""
 
     number: Index  # [N] of the person, recording, scene or sample
     kind: str  # which of these, in words
@@ -124,7 +124,7 @@ def _mean_over_strata(values: Float, stratum: Index) -> float:
 
 
 def _shrinkage(freedom: int) -> float:
-    """What of a number of samples is left, as the variance is that of few groups."""
+    """Return the factor (z / t)^2 on a number of samples whose variance is that of few groups."""
     return float((NORMAL / stdtrit(max(1, freedom), 0.975)) ** 2)
 
 

@@ -144,7 +144,7 @@ class _Evaluation:
         self.report.line(line)
 
     def say_notes(self, eval_sets: Sequence[EvalSet]) -> None:
-        """Say what was done to make the images fit, and which were left out, each once."""
+        """Print, each once, the changes that made the images fit, and the images left out."""
         for note in dict.fromkeys(note for s in eval_sets for note in s.images.notes):
             self.say(note)
         left_out = (left_out_message(s.images, self.options.names) for s in eval_sets)

@@ -111,7 +111,7 @@ class RunMetadata(Section):
 
     @cached_property
     def task(self) -> Task:
-        """What the network has learned."""
+        """Task that the network has learned."""
         return create_task(self.settings)
 
     @property

@@ -155,7 +155,7 @@ class TrainConfig(Section):
     validation_share: Share = 0.2
     """Share of each class that validates, where images come without a split."""
     data_weights: tuple[Weight, ...] | None = None
-    """How often an epoch shows an image of each of several data sets; null is once."""
+    """Number of times an epoch shows an image of each of several data sets; null is once."""
     sampling: Literal["all", "balanced"] = "all"
     """Images of an epoch: all once, or balanced, every class equally often."""
     augment: AugmentConfig = AugmentConfig()

@@ -69,7 +69,7 @@ class NoTrainingProgress(NoProgress):
 
 @dataclass(frozen=True)
 class TrainOptions:
-    """What else is asked of a training run, beside its config and data."""
+    """Options of a training run beside its config and data."""
 
     # {class of the data: class here, or None to leave it out}
     names: Mapping[str, str | None] = field(default_factory=dict)

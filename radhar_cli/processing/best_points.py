@@ -126,7 +126,7 @@ class Angles:
 
 @dataclass(frozen=True)
 class EchoSpread:
-    """How a windowed Fourier transform spreads a steady echo over its bins.
+    """Spread of a steady echo over the bins of a windowed Fourier transform.
 
     Attributes:
         window: The window over the samples.
@@ -216,7 +216,7 @@ class EchoSpread:
 
 @dataclass(frozen=True, kw_only=True)
 class Finder:
-    """What finds the points of a board's frames.
+    """Detector of the points of a board's frames.
 
     Attributes:
         board: The board.

@@ -16,7 +16,7 @@ FLOAT32_DECADES = 30  # of powers that float32 holds, and their quotients
 
 
 class Reference(Enum):
-    """What of an image its grey levels are relative to.
+    """Power that the grey levels of an image are relative to.
 
     PEAK: its largest power, which is level 255.
     NOISE: its noise floor, which is two fifths of the range above level 0, as a canceller lowers

@@ -56,7 +56,7 @@ class OwnedPaths(NamedTuple):
 
 
 class Link(NamedTuple):
-    """What the paths of one channel run through.
+    """Antennas, wall and waveform of the paths of one channel.
 
     Attributes:
         antennas: antennas between which they run.

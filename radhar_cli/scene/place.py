@@ -1,6 +1,6 @@
-"""Where a person starts, so that they are where `motion.place` says at one instant.
+"""Start of a person, so that they are where `motion.place` says at one instant.
 
-Who stays in place is there. A course is laid through the place at one of the instants at which all
+A person who stays in place is there. A course is laid through the place at one of the instants at which all
 of it stays within the zone that radar, wall and room leave. It is chosen among those, not by trying
 again: whether a scene is possible would depend on what people do, and where they are would tell it.
 As `motion.place.instant` is drawn, far places are at the far ends of courses: ranges at any instant
@@ -28,7 +28,7 @@ LOOKS_AHEAD = 0.5  # least horizontal share of the boresight of a radar that has
 
 @dataclass(frozen=True)
 class Zone:
-    """Where a body may be, as radar, wall and room leave it.
+    """Region in which a body may be, as radar, wall and room leave it.
 
     Attributes:
         antennas: antennas of the radar.
@@ -46,7 +46,7 @@ class Zone:
     y: tuple[float, float]
 
     def miss(self, joints: Float, torso: Float, starts: Float) -> Float:
-        """How far bodies are out of the zone at worst [K], m; 0 or less where they are inside.
+        """Compute the largest distance of bodies out of the zone [K], m; 0 or less inside.
 
         Args:
             joints: joints of a body that starts at the origin [2, I, M], m.
@@ -91,7 +91,7 @@ def zone_of(scene: Scene, place: tuple[float, float]) -> Zone:
 def distance_ahead(
     torso: Float, antennas: Antennas, looks_at: tuple[float, float] | None = None
 ) -> Float:
-    """How far a torso [2 or 3, ...] is before the hindmost antenna [...], m.
+    """Compute the distance of a torso [2 or 3, ...] before the hindmost antenna [...], m.
 
     It is infinite where a radar looks down. Antennas without a pattern look along x.
 

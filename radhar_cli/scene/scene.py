@@ -180,12 +180,12 @@ class Person:
 
     @property
     def motion(self) -> MotionConfig[float]:
-        """How the person moves."""
+        """Motion of the person."""
         return cast(MotionConfig[float], self.config.motion)
 
     @property
     def timing(self) -> TimingConfig[float]:
-        """When the person moves."""
+        """Timing of the person's motion."""
         return cast(TimingConfig[float], self.config.timing)
 
     @property
@@ -273,7 +273,7 @@ class Scene:
 
     @property
     def room(self) -> RoomConfig[float]:
-        """What stands in the room, and its faces."""
+        """Objects in the room, and its faces."""
         return cast(RoomConfig[float], self.config.room)
 
     @property

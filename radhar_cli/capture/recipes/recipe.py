@@ -37,7 +37,7 @@ class Take(NamedTuple):
 
 @dataclass(frozen=True)
 class SetRecipe:
-    """How a published set becomes a data set.
+    """Steps from a published set to a data set.
 
     Attributes:
         source: Who published it, and where.

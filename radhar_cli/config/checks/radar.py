@@ -205,7 +205,7 @@ def frames_problems(c: Request, radar: FramesRadar) -> Iterator[Problem]:
 
 
 def _problem_of_samples(radar: FramesRadar, samples: int) -> Problem:
-    """Say that a chirp of a radar with frames has too few samples, or too many."""
+    """Return the problem that a chirp of a radar with frames has too few samples, or too many."""
     if isinstance(radar, Steps):
         right = f"should be at most {MAX_SAMPLES} with radar.frame"
         return Problem("radar.steps", radar.steps, right)
@@ -218,7 +218,7 @@ def _problem_of_samples(radar: FramesRadar, samples: int) -> Problem:
 def _problem_of_length(
     radar: FmcwRadar | SfcwRadar | FramesRadar, longest: float, interval: float, right: str
 ) -> Problem:
-    """Say that a chirp, or a sweep of steps, is too long.
+    """Return the problem that a chirp, or a sweep of steps, is too long.
 
     Args:
         radar: the radar that sends it.
@@ -316,7 +316,7 @@ def _firmware_problems(c: Request, radar: FramesRadar) -> Iterator[Problem]:
 
 
 def _boundary_problem(radar: ArrayRadar) -> Problem:
-    """Say that a radar has no box of the room that points could be cropped to."""
+    """Return the problem that a radar has no box of the room that points could be cropped to."""
     right = f"should be false: {radar.named} has no boundaryBox"
     return Problem("cloud.boundary_box", True, right)
 

@@ -150,7 +150,7 @@ def room_problems(c: Request) -> Iterator[Problem]:
 def _describe_inside(
     places: Sequence[tuple[float, float]], within: Sequence[tuple[float, float]], named: str
 ) -> str:
-    """Say what of an antenna's place is not inside the box, or before its front, in numbers."""
+    """Describe the coordinates of an antenna that are not inside the box, nor before its front."""
     outside = " and ".join(
         f"{axis} is {b:g}, not between {low:g} and {high:g}"
         for axis, (a, b), (low, high) in zip("xyz", places, within, strict=True)

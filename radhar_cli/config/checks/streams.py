@@ -1,4 +1,4 @@
-"""What does not go together in a config of streams."""
+"""Checks of keys that do not go together in a config of streams."""
 
 from collections.abc import Iterator
 from typing import cast

@@ -29,7 +29,7 @@ _OF_PEOPLE = ("subject.", "motion.", "timing.")
 
 
 def unused_keys(config: Config) -> list[str]:
-    """Say which keys have no effect although they say something else than if they were left out."""
+    """Warn of keys that have no effect, although their values are not the defaults."""
     fixed = all(isinstance(number, int | float) for _, number in numbers(config))
     same = _drawn_from if fixed else eq
     without = {"recordings": "the scenes of a config; it needs radhar generate --recordings"}
@@ -71,7 +71,7 @@ def _describe_unused(
 
 
 def _left_out(config: Config) -> Config:
-    """What a config says where it says nothing, with the radar and the motion that it has."""
+    """Return the defaults under the same radar, model of motion, duration, stream and wall."""
     radar = config.radar
     needed = {
         "waveform",
@@ -160,7 +160,7 @@ def _keys_of_people(config: Config) -> Iterator[str]:
 
 
 def _why_nobody(config: Config, activities: Sequence[Activity], key: str, doing: str) -> str:
-    """Why no activity uses a number of people, and which would."""
+    """Return the reason why no activity uses a number of people, with the activities that would."""
     if all(one.motion is not None or config.files_of(one) is not None for one in activities):
         return f"{doing}, whose motion no model makes"
     users = config.users_of(key)

@@ -1,4 +1,4 @@
-"""What is known of each sample of a data set in memory: a table of rows."""
+"""Table of the samples of a data set in memory, one row each."""
 
 from collections.abc import Iterable
 from dataclasses import dataclass, fields

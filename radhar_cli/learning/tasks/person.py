@@ -1,4 +1,4 @@
-"""Who it is, whatever they do: one class a person (`target: person`)."""
+"""Identity of the person, whatever the activity: one class a person (`target: person`)."""
 
 import hashlib
 import re
@@ -141,7 +141,7 @@ def _persons_of(images: ImageSet) -> list[str]:
 
 
 def why_not_split_by_recording(samples: SampleTable, count: int) -> str | None:
-    """Why persons cannot be learned with the split of a set, in words; None if they can.
+    """Describe why a set's split is not one to learn persons with; None if it is.
 
     Args:
         samples: table whose labels are persons.

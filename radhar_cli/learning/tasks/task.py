@@ -1,4 +1,4 @@
-"""What a network learns of an input: a task has its outputs, targets, loss, score and report."""
+"""Tasks that a network learns: outputs, targets, loss, score and report."""
 
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterable, Mapping, Sequence
@@ -21,7 +21,7 @@ from radhar_cli.numerics.arrays import Float, Index
 
 
 class Names(Protocol):
-    """What images, and a trained network, have names for."""
+    """Names that images, and a trained network, have."""
 
     @property
     def classes(self) -> tuple[str, ...]:
@@ -69,7 +69,7 @@ class Evaluation:
 
 @dataclass(frozen=True)
 class Task(ABC):
-    """What a network learns of an input; B inputs in a batch, N in a data set.
+    """Task that a network learns of an input; B inputs in a batch, N in a data set.
 
     A task of one's own is a subclass in a file of its own and a line of `choices.TASKS`.
     """

@@ -61,7 +61,7 @@ def arm_directions_to_hands(
 
 
 def hanging_hands(body: Physique, shoulder: Float, elbow: Float) -> tuple[Float, Float]:
-    """Where hands of `arm_directions` are, and in which directions their elbows bend.
+    """Place hands that hang by angles, and return the directions in which their elbows bend.
 
     Args:
         body: Whose arms.

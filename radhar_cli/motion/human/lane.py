@@ -32,7 +32,7 @@ class Lane:
 
 
 class WalkTimes(NamedTuple):
-    """When a walk begins and ends, and how long its changes take, s."""
+    """Beginning and end of a walk, and durations of its changes, s."""
 
     begin: float
     end: float  # when it begins to stop; of a walk that goes on, the end of the recording

@@ -187,7 +187,7 @@ class HumanMotion:
 
     @cached_property
     def _begins(self) -> list[float]:
-        """When each part but the first takes over, s: a walk does so from what it overlaps."""
+        """Times at which parts but the first take over, s; a part planted by a walk, at its end."""
         pairs = pairwise(part for part, _ in self.parts)
         return [
             last.end if isinstance(last, Walking) and last.planted[-1:] == (part,) else part.begin

@@ -20,7 +20,7 @@ class Phase(NamedTuple):
 
 
 class Place(NamedTuple):
-    """Where a part ends, seen from where it began: m ahead, m to the left, rad to the left."""
+    """Place of a part's end, seen from its beginning: m ahead, m to the left, rad to the left."""
 
     ahead: float = 0.0
     left: float = 0.0

@@ -75,7 +75,7 @@ class GesturesConfig(Section, Generic[B]):
     cup_held: Annotated[B, ByActivity(NOT_NEGATIVE, RATIO), People("drinking", 0, 1)] = (
         default_draw(Choice(choice=(0, 1)))
     )
-    """Where a standing person has the cup between drinks: 1 ahead, 0 at the hanging arm."""
+    """Place of a standing person's cup between drinks: 1 ahead, 0 at the hanging arm."""
     strokes_hz: Annotated[
         B, ByActivity(NOT_NEGATIVE, FREQUENCY), People("writing writing_seated", 1, 6)
     ] = default_draw(normal(4.0, 0.8, 2.5, 5.5))
@@ -153,7 +153,7 @@ class Gesturing(Repeating[G]):
 
     @cached_property
     def _last_s(self) -> float:
-        """When the last repetition has ended, s."""
+        """Time at which the last repetition has ended, s."""
         start, pace, _ = self._repetitions[-1]
         return start + pace * self.movement.period
 

@@ -63,7 +63,7 @@ class LyingConfig(Section, Generic[B]):
     hands: Annotated[B, ByActivity(NOT_NEGATIVE, RATIO), People(None, 0, 1)] = default_draw(
         uniform(0.0, 1.0)
     )
-    """Where the hands of a person on the back are: 0 beside the body, 1 on the belly."""
+    """Place of the hands of a person on the back: 0 beside the body, 1 on the belly."""
 
 
 SECTION = LyingConfig

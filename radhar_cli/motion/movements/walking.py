@@ -116,12 +116,12 @@ class WalkingConfig(Section, Generic[B]):
 
 
 class WalkingTiming(Section, Generic[B]):
-    """When walks begin and end before and after other movements."""
+    """Beginnings and ends of walks before and after other movements."""
 
     walk_begin_s: Annotated[
         B | None, ByActivity(NOT_NEGATIVE, SECONDS, null=True), People("S8", 0, 600)
     ] = default_draw(None)
-    """When the walk of S8 begins, after standing; null is by timing.onset, before or after 0 s."""
+    """Beginning of the walk of S8, after standing; null is by timing.onset, before or after 0 s."""
     walk_start_s: Annotated[
         B,
         ByActivity(NOT_NEGATIVE, SECONDS, null=True),
@@ -129,7 +129,7 @@ class WalkingTiming(Section, Generic[B]):
         Paper("S9 S11"),
         ByModel(paper=2.0),
     ] = default_draw(None)
-    """When the walk after rising begins; null of people is when they have risen, less overlap_s."""
+    """Beginning of the walk after rising; null of people is the end of rising, less overlap_s."""
     walk_stop_s: Annotated[
         B,
         ByActivity(NOT_NEGATIVE, SECONDS, null=True),
@@ -137,8 +137,8 @@ class WalkingTiming(Section, Generic[B]):
         Paper("S10 S12"),
         ByModel(paper=2.0),
     ] = default_draw(None)
-    """When the walk before sitting down or falling begins to end; null of people is by
-    timing.onset, which says when sitting down or falling begins."""
+    """Time at which the walk before sitting down or falling begins to end; null of people is by
+    timing.onset, the beginning of sitting down or falling."""
     overlap_s: Annotated[B, ByActivity(NOT_NEGATIVE, SECONDS), People("S9 S10 S11 S12", 0, 0.8)] = (
         default_draw(0.0)
     )
@@ -339,7 +339,7 @@ class Walking:
         return g
 
     def _bent(self, t: Float) -> Float:
-        """How far [M] the legs are as bent as those that walk at times t [M] (s), not at rest."""
+        """Compute the share [M] of a walker's bend that legs have at times t [M] (s); 0 at rest."""
         share: Float = np.ones(t.size)
         if self.from_rest:
             share = minimum_jerk((t - self.begin) / self._unlocking)
@@ -418,7 +418,7 @@ class Walking:
 
     @cached_property
     def _slow_spans(self) -> Float:
-        """When the walker begins and ends to go slower in each half turn [2, K], s."""
+        """Times at which the walker begins and ends to go slower in each half turn [2, K], s."""
         lane, v = self.gait.lane, self.gait.speed
         if lane is None or not self._turn_starts.size:
             return np.empty((2, 0))
@@ -462,7 +462,7 @@ class Walking:
 
     @property
     def _trip_start(self) -> float:
-        """When the walker trips, s."""
+        """Time at which the walker trips, s."""
         return self.begin + min(self.stop - self.begin, 5.0) / 2
 
     @cached_property

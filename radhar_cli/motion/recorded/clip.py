@@ -302,7 +302,7 @@ def _find_unit(
 
 
 def _describe_unit(leg: float, unit_of_file: float | None, taken_for: str) -> tuple[str, ...]:
-    """Say that the unit of a file makes no person; nothing where the file says none."""
+    """Describe the unit of a file that makes no person; () where the file states none."""
     if not unit_of_file:
         return ()
     return (

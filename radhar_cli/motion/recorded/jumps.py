@@ -82,7 +82,7 @@ def bridge_jumps(p: Float, rate: float, metres: float) -> tuple[Float, Bool]:
 
 
 def describe_jumps(is_away: Bool, rate: float) -> tuple[str, ...]:
-    """Say how many frames are bridged in which of the thirteen joints.
+    """Describe the frames that are bridged, and the joints that jump in them; () without any.
 
     Args:
         is_away: Whether each joint was elsewhere [frames, joints].

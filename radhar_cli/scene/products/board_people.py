@@ -119,7 +119,7 @@ def assign_points(cloud: Cloud, skeletons: Skeletons, board: Board, scene: Scene
 
 @dataclass(frozen=True)
 class ApparentPlaces:
-    """Where joints seem to be that the legs of transmitter and receiver see in two directions.
+    """Apparent places of joints that transmitter and receiver see in two directions.
 
     The echo by legs a, b and that by b, a have the same range and Doppler, and superpose. Neither
     is a plane wave to the virtual array, whose phases are those of the transmitters by one

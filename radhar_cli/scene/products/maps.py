@@ -40,7 +40,7 @@ WINDOWS: tuple[tuple[str, MakeFrames, str], ...] = (
 
 
 class DopplerTransform(NamedTuple):
-    """How the power of a Doppler-time map is computed of a signal.
+    """Computation of the power of a Doppler-time map from a signal.
 
     Attributes:
         needs: names of its inputs: signal, windows, and of a gated map the gate.

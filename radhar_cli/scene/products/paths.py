@@ -1,4 +1,4 @@
-"""What a scene is made of: waveform, antennas, wall, motions, paths, and the torso's delay."""
+"""Parts of a scene: waveform, antennas, wall, motions, paths, and the torso's delay."""
 
 from collections.abc import Iterator
 from functools import partial

@@ -27,7 +27,7 @@ from radhar_cli.scene.scene import Scene
 
 
 class PowerSource(NamedTuple):
-    """Where P_s comes from.
+    """Source of P_s.
 
     Attributes:
         needs: names of the products that it is made from.

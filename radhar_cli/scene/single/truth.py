@@ -1,4 +1,4 @@
-"""What really moved: positions, radial velocities, and which movement is under way."""
+"""True motion: positions, radial velocities, and the movement under way."""
 
 from collections import Counter
 from dataclasses import dataclass, field, replace

@@ -42,7 +42,7 @@ QUICK_SAMPLES = 60  # of a class
 
 @dataclass(frozen=True)
 class AuditLine:
-    """How well the class is told from one piece of evidence."""
+    """Result of the audit of one piece of evidence."""
 
     evidence: Evidence
     result: ClassShare | None  # None where it cannot be tested
@@ -62,7 +62,7 @@ class AuditLine:
 
     @property
     def verdict(self) -> str:
-        """What it means, in words."""
+        """Meaning of the result, in words."""
         if self.result is None:
             return "not tested: too few persons, recordings or samples of each class"
         if self.result.is_confounded:
@@ -85,7 +85,7 @@ class AuditLine:
 
     @property
     def cure(self) -> str:
-        """What to draw or record instead; empty where nothing is told."""
+        """Advice on data to draw or record instead; empty where nothing is told."""
         return self.evidence.cure if self.is_leak else ""
 
 
@@ -113,7 +113,7 @@ class Audit:
 
     @property
     def sentences(self) -> list[str]:
-        """What is wrong beside the lines: laws by class, duplicates, split persons, cues."""
+        """Warnings beside the lines: laws by class, duplicates, split persons, cues."""
         return [*self.data.laws, *self.overlaps.sentences, *self.data.on_cue]
 
     def lines_above(self, share: float, parts: Sequence[EvidencePart]) -> list[AuditLine]:
@@ -222,7 +222,7 @@ def _left_out(data: AuditedSet, rows: Index, group: Index) -> list[str]:
 
 @dataclass(frozen=True)
 class PictureScan:
-    """What a first look at images finds: digests, thumbnails, and where bodies are."""
+    """Results of a first look at images: digests, thumbnails, and bands where bodies are."""
 
     rows: Index  # [M] rows of the data set
     digests: list[str]  # [M]

@@ -147,6 +147,6 @@ def _now(number: NumberKey) -> str:
 
 
 def _ends(margin: Margin) -> tuple[str, str]:
-    """What is drawn and its limit, with their unit."""
+    """Return the extreme that is drawn and its limit, with their unit."""
     drawn, limit = (f"{x:.3g} {margin.unit}".rstrip() for x in (margin.drawn, margin.limit))
     return drawn, limit

@@ -74,7 +74,7 @@ class Limit:
         return self.number.key
 
     def beyond_in_words(self, says_source: bool = False) -> str:
-        """What happens beyond, with what ends there if that is to be said."""
+        """Describe the consequence beyond, with its origin if `says_source`."""
         text = self.beyond.sentence
         if says_source and self.beyond.source is not Origin.KEY:
             text += f" [{self.beyond.source}]"

@@ -51,7 +51,7 @@ class PointDifference:
 
 
 class SceneDifference(NamedTuple):
-    """What a setting changes of one scene."""
+    """Differences that a setting makes to one scene."""
 
     error_of: str  # signal whose error is measured, in words
     # its relative error, dB; -inf of none, None where there is none to compare

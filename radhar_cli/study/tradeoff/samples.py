@@ -87,7 +87,7 @@ class ShownMap(NamedTuple):
 
 
 class Shown(NamedTuple):
-    """What people and networks see of a sample."""
+    """Pictures and points of a sample, as people and networks see them."""
 
     pictures: dict[str, ShownMap]  # {map: picture}
     cloud: Cloud | None  # points of a board's frames

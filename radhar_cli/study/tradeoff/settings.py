@@ -37,7 +37,7 @@ LEAST_PX = 8
 
 
 class Change(StrEnum):
-    """What another setting does to the data."""
+    """Kind of change that another setting makes to the data."""
 
     ERROR = "error"  # another computation of the same physics
     PICTURE = "another picture"  # other physics, or other parameters

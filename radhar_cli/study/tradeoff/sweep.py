@@ -1,4 +1,4 @@
-"""What a sweep has measured: a row for each setting, floors of images, the blur of the machine."""
+"""Measurements of a sweep: a row for each setting, floors of images, the blur of the machine."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field

@@ -347,8 +347,7 @@ class CwRadar(ContinuousWave, _Emission[N], _AntennaPair[N], _Pulses[N], Generic
     symmetric."""
 
     def why_no_map(self, kind: MapKind, gating: str | None) -> str | None:
-        """Return the reason why the radar makes no map; real samples have no sign of the
-        Doppler."""
+        """Return the reason why the radar makes no map; real samples have no sign of Doppler."""
         if self.output == "real" and kind.treatment.compensated:
             return "radar.output: real has no sign of the Doppler"
         return super().why_no_map(kind, gating)

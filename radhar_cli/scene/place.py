@@ -1,10 +1,10 @@
 """Start of a person, so that they are where `motion.place` says at one instant.
 
-A person who stays in place is there. A course is laid through the place at one of the instants at which all
-of it stays within the zone that radar, wall and room leave. It is chosen among those, not by trying
-again: whether a scene is possible would depend on what people do, and where they are would tell it.
-As `motion.place.instant` is drawn, far places are at the far ends of courses: ranges at any instant
-then vary about as much as places do, whoever walks.
+A person who stays in place is there. A course is laid through the place at one of the instants at
+which all of it stays within the zone that radar, wall and room leave. It is chosen among those, not
+by trying again: whether a scene is possible would depend on what people do, and where they are
+would tell it. As `motion.place.instant` is drawn, far places are at the far ends of courses: ranges
+at any instant then vary about as much as places do, whoever walks.
 """
 
 from dataclasses import dataclass

@@ -46,7 +46,6 @@ def frames_of_recording(
     """Make the products of a board's frames in a recording.
 
     Args:
-        recording: recording of the board.
         config: config with the radar of the frames; that of a data set of recordings has no cloud.
         names: products of a cube, such as range_doppler or cloud.
         start: begin of the part of the recording that is used, s; None is the start.

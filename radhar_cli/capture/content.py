@@ -155,7 +155,6 @@ def describe_difference(
     The text is such as "prf_hz = 200: should be 256".
 
     Args:
-        content: content of a recording.
         expected: content that it should have.
         tolerance: relative difference of numbers that are taken for the same.
     """
@@ -176,7 +175,6 @@ def describe_other_chirps(
     """Describe a difference of contents, in whichever half of the band echoes lie; or return None.
 
     Args:
-        content: content of a recording.
         expected: content that it should have.
         tolerance: relative difference of numbers that are taken for the same.
     """
@@ -210,7 +208,6 @@ def _radar_keys(content: Content, waveform: str) -> dict[str, Any]:
     """Keys of `radar:` that a recording determines, with their values.
 
     Args:
-        content: content of the recording.
         waveform: `waveform:` of the config, which samples of chirps leave as it is, fmcw or sfcw.
     """
     numbers = {"carrier_hz": content.carrier_hz, "prf_hz": content.prf_hz}

@@ -88,7 +88,6 @@ def radar_of_recording(recording: Recording, overrides: Sequence[str] = ()) -> d
     """Section `radar` of a config that has the radar of a recording.
 
     Args:
-        recording: the recording.
         overrides: KEY=VALUE of a config; those of `radar` say what the recording does not.
 
     Raises:
@@ -202,7 +201,6 @@ def describe_chosen_frames(recording: Recording, section: Mapping[str, Any]) -> 
     """Describe the frames chosen for a recording that has none, with the reason; None if none were.
 
     Args:
-        recording: the recording.
         section: section `radar` of a config, by `radar_of_recording`.
     """
     content, chirps = recording.info.content, (section.get("frame") or {}).get("chirps")

@@ -312,7 +312,6 @@ class DopplerCells:
         """Cells of a recording of a content.
 
         Args:
-            content: content of the recording.
             is_iq: whether samples are complex.
         """
         if isinstance(content, SlowTime):

@@ -123,7 +123,7 @@ def import_points(
     Args:
         paths: its files, in order.
         out: recording to write.
-        header: what is known of the board.
+        header: facts of the board.
         overwrite: replace an existing recording.
 
     Raises:
@@ -262,7 +262,7 @@ class DumpFrames:
         reader: Reads points and targets of a packet.
         subframe: Number of the subframe whose points are read.
         misfits: Number of packets whose messages do not fit.
-        first_misfit: What did not fit in the first of them.
+        first_misfit: Misfit in the first of them.
         others: Number of packets of other subframes.
     """
 

@@ -33,7 +33,6 @@ def write_maps(maps: Maps, config: Config, info: RecordingInfo, folder: Path) ->
     """Write maps.h5 into a folder; return its path, in a list.
 
     Args:
-        maps: maps of the recording.
         config: config by which they were made.
         info: description of the recording.
         folder: output folder.

@@ -107,7 +107,6 @@ def prepare_recordings(
     """Make the recordings of a download that are missing, and their manifest.
 
     Args:
-        preparation: What is prepared.
         out: Folder of the data set.
         jobs: Number of processes.
         progress: Is told of every recording.

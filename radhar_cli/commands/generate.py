@@ -180,7 +180,6 @@ class Work:
         Args:
             config: that of the data set.
             out: its folder.
-            part: the part.
             merged: folder that `radhar merge` takes: that one, or the one of several radars.
             is_last: whether nothing is left to do after it.
         """

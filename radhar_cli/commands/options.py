@@ -101,7 +101,7 @@ def resumable(work: str) -> Iterator[None]:
     """Context of work that Ctrl-C (status 130) or SIGTERM (status 143) may end.
 
     Args:
-        work: what is kept then, for the message.
+        work: work that is kept then, for the message.
 
     Raises:
         typer.Exit: the work was ended so, with that status.

@@ -41,7 +41,7 @@ class BarProgress(Closing):
             name: the stage, shown before the bar.
             total: number of units of the stage.
             done: number of them that are finished already.
-            unit: what is counted, in the singular.
+            unit: name of the items, in the singular.
         """
         self.close()
         unit = unit or self._unit
@@ -206,7 +206,7 @@ def _tell_stages(products: Mapping[str, str], shares: Mapping[str, float]) -> No
     """Print the stages of a build, and the share of its processor time that each takes.
 
     Args:
-        products: what each product of a sample is, by name.
+        products: description of each product of a sample, by name.
         shares: share of each stage, %; empty where no sample was timed.
     """
     from radhar_cli.dataset.estimate import STAGES

@@ -16,7 +16,7 @@ class BuiltInRadar:
     Attributes:
         name: Name by which configs have it.
         device: Board that it is for.
-        header: What its .cfg says.
+        header: Content of its .cfg.
     """
 
     name: str

@@ -120,7 +120,7 @@ def _rename_keys(section: Any, prefix: str, places: Places) -> None:
 
     Args:
         section: A document, or one of its people; changed in place.
-        prefix: What stands before its keys in `places`.
+        prefix: Beginning of its keys in `places`.
         places: {dotted key: file:line}, changed in place.
     """
     for other, key in OTHER_NAMES.items():

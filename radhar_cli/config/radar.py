@@ -180,8 +180,7 @@ class AnyRadar(Section):
         """Return the reason why the radar does not make a map of a signal; None if it makes it.
 
         Args:
-            kind: the map.
-            gating: what makes Doppler maps those of a gate, in words; None where they show the
+            gating: key that makes Doppler maps those of a gate, in words; None where they show the
                 coherent sum over range.
         """
         if gating and kind.transform is Transform.FSST:

@@ -461,7 +461,7 @@ def validated(
         where: file that messages name for keys without a place.
         places: {dotted key: file:line} of what stands in it, or in a file under it.
         options: {dotted key: option} of what an option of the command line says instead.
-        written: where the keys of the document stand in a file of several radars; None in others.
+        written: places of the document's keys in a file of several radars; None in others.
 
     Raises:
         ConfigError: the document is no such config; a line for each of MAX_MISTAKES mistakes.

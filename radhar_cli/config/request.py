@@ -560,7 +560,6 @@ def _with_defaults(section: S, values: Mapping[str, Any], inner: str = "") -> S:
     """A section with defaults of other keys' making, which do not count as given.
 
     Args:
-        section: the section.
         values: {key: default}.
         inner: key of the section within it whose keys they are; "" for its own.
     """

@@ -211,7 +211,7 @@ class FacesConfig(Section, Generic[N]):
         """Make the faces that reflect.
 
         Args:
-            box: where they are; None for a floor alone.
+            box: box of the faces; None for a floor alone.
             middle_hz: middle of the radar's band, at which permittivities are taken.
             polarisation: vertical or horizontal.
         """

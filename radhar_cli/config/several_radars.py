@@ -41,7 +41,7 @@ class RadarDocument:
     Attributes:
         name: name of the radar in `radars`.
         values: plain values of its config.
-        written: what the file says: {name: entry of `radars`}, `radar` and the rest.
+        written: content of the file: {name: entry of `radars`}, `radar` and the rest.
     """
 
     name: str

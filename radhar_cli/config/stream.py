@@ -152,9 +152,8 @@ def draw_stream(
     """Draw the movements of a stream, with the label of each.
 
     Args:
-        stream: how the activities follow each other.
+        stream: order and pauses of the activities.
         seconds: duration of the recording, s.
-        activities: what people do.
         classes: classes of one's own, whose sequences are drawn for each bout.
         chance: random choices and numbers.
     """

@@ -166,7 +166,6 @@ def encode_samples(config: Config, rows: Sequence[SampleRow]) -> WrittenSamples:
 
     Args:
         config: that of the data set.
-        rows: the samples.
     """
     owner = identity_hash(identity(config))
 
@@ -193,7 +192,7 @@ def scale_up(
     Args:
         config: that of the data set.
         trial: samples of it, one at least.
-        written: what it takes to write them.
+        written: cost of writing them.
         jobs: number of processes.
         before: processor time of a build before its processes start, s.
     """

@@ -111,8 +111,8 @@ def describe_levels(image: ImageConfig, white: str = "level 255", black: str = "
 
     Args:
         image: section `image` of the config.
-        white: what the brightest level is called.
-        black: what the darkest level is called.
+        white: name of the brightest level.
+        black: name of the darkest level.
     """
     span = f"{image.dynamic_range_db:g} dB"
     if isinstance(image.reference, AbsoluteReference):

@@ -108,8 +108,7 @@ def refuse_foreign_files(
     """Refuse a folder that holds other files than those that radhar leaves there.
 
     Args:
-        folder: the folder.
-        content: what it lacks, for the message: "radhar data set".
+        content: content that it lacks, for the message: "radhar data set".
         allowed: names that it may hold.
         error: type of the error.
 
@@ -130,8 +129,7 @@ def refuse_differences(
     """Refuse a folder that holds another data set, or another run.
 
     Args:
-        folder: the folder.
-        content: what it holds, for the message: "data set".
+        content: content that it holds, for the message: "data set".
         differing: a line for each difference; none of them is no reason to refuse.
         error: type of the error.
 

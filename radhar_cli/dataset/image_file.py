@@ -86,8 +86,7 @@ def gray_of_bytes(data: bytes, where: Path) -> Levels:
     """Levels [H, W] of the bytes of an image file, as `read_gray` reads them of the file.
 
     Args:
-        data: the bytes.
-        where: what messages call it.
+        where: name of the image in messages.
     """
     with _open_image(where, None, data) as image:
         levels = stored_levels(image)

@@ -90,7 +90,7 @@ def describe_missing(path: Path, otherwise: str = "no such file or folder") -> s
 
     Args:
         path: path of nothing.
-        otherwise: what is said of any other path.
+        otherwise: description of any other path.
     """
     if (target := folder_of_all_radars(path)) == path:
         return otherwise

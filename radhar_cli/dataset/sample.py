@@ -94,7 +94,6 @@ def synthesise(scene: Scene, plan: Plan, config: Config) -> StoredSample:
     """Run the plan of a data set on one scene.
 
     Args:
-        scene: the scene.
         plan: plan of the images (`plan_images`).
         config: config of the data set, whose classes the labels number; that of the scene has but
             the class that is performed.
@@ -110,7 +109,6 @@ def store(recording: Results, scene: Scene, config: Config) -> StoredSample:
 
     Args:
         recording: products of the plan of a data set.
-        scene: the scene.
         config: config of the data set, as of `synthesise`.
 
     Raises:
@@ -162,7 +160,6 @@ def labels_of(scene: Scene, config: Config) -> dict[str, NDArray[Any]]:
     """Labels of everybody in a scene: LABELS [class] and PERSON_LABEL [person] by name.
 
     Args:
-        scene: the scene.
         config: config of the data set; labels are places in its `every_class`.
 
     Returns:

@@ -95,7 +95,6 @@ def values(scene: Scene, columns: tuple[Field, ...], error_db: float = nan) -> F
     """Numbers of a scene in the units of the config keys [field], NaN where one does not apply.
 
     Args:
-        scene: the scene.
         columns: the fields.
         error_db: measured error of the direct engine, for the field ERROR.
     """

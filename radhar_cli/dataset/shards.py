@@ -213,7 +213,6 @@ def require_tiling(
 
     Args:
         folder: output folder, for the message.
-        shards: the shards.
         count: number of rows of the data set.
         remedy: advice on runs of missing rows, if not to run the same command again.
         unusable: shards that were left out, and why.

@@ -82,7 +82,6 @@ def make_trial_sample(config: Config, data_set: str, row: int) -> TrialSample:
     Args:
         config: that of the data set.
         data_set: hash of its identity.
-        row: row of the sample.
     """
     config, plan, rows, columns, table = _prepare(config, data_set)
     started, before = monotonic(), process_time()

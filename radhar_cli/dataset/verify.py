@@ -60,7 +60,7 @@ def verify(
 
     Args:
         folder: output folder of `generate`, or its dataset.h5.
-        samples: how many to synthesise anew, spread evenly over the rows.
+        samples: number of samples to synthesise anew, spread evenly over the rows.
         motion: folder of the motion files of its classes; None re-synthesises no sample of them: a
             stored config is not trusted to name files.
         progress: is told of each checksum, sample and PNG file.

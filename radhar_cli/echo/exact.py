@@ -40,7 +40,6 @@ def beat_blocks(
 
     Args:
         source: The paths.
-        waveform: The radar.
         receiver: Impairments, in order.
         motion_in_chirp: Whether paths go on moving during a chirp.
     """

@@ -56,7 +56,6 @@ def gridded_sum(delay: Float, amplitude: Float, chirps: Chirps) -> tuple[Complex
     Args:
         delay: Delays [I, V, POWERS] (s) of the paths at the nodes.
         amplitude: Amplitudes [I, V, POWERS] there, with their signs.
-        chirps: The chirps.
 
     Returns:
         Samples [V, L, N], in single precision, and the sum of all squared amplitudes.

@@ -32,7 +32,7 @@ def page_of_rows(
     """Make a figure with a row of panels beside each name.
 
     Args:
-        rows: what the panels of a row are to show, by name.
+        rows: contents of the panels of each row, by name.
         size: width and height of a panel, inches.
         margin: space beside and above the panels, inches.
 

@@ -72,7 +72,7 @@ class MapLevels:
     Attributes:
         name: name of the map.
         levels: levels [frame, row, column], lowest row first.
-        scale: what they stand for.
+        scale: values and colours of the levels.
         columns, rows: axes.
         times: times of the frames [frame], s, to show the frame of each instant; None shows a
             cursor where the columns are times.
@@ -90,7 +90,6 @@ def plot_space(view: SceneView, cloud: PointFrames | None, board: Board | None) 
     """Plot skeletons and points in 3-D.
 
     Args:
-        view: view of the scene.
         cloud: points of frames; None for none.
         board: board whose place is known, so that points are in the axes of the scene; else None.
     """

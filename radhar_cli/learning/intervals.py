@@ -134,7 +134,7 @@ def numbers_of_share(key: str, right: Float, groups: Groups) -> dict[str, Any]:
     Args:
         key: key of the share, such as accuracy.
         right: [N] 1 of what is right, 0 of what is not, or shares of it.
-        groups: what of them varies together.
+        groups: groups of them that vary together.
     """
     interval = None if _are_too_few(groups) else list(share_interval(right, groups.number))
     return {f"{key}_95": interval, **_over(groups)}

@@ -63,9 +63,8 @@ class Learner:
 
         Args:
             model: network with its initial weights.
-            task: what it learns, with the settings of the training.
+            task: task that it learns, with the settings of the training.
             normalise: normalisation from stored levels to inputs.
-            device: where it learns.
             precision: of the passes.
         """
         self.task, self.normalise = task, normalise
@@ -84,7 +83,7 @@ class Learner:
 
         Args:
             levels: uint8 [B, C, H, W] as they are stored, or clouds float32 [B, 6, T, points].
-            targets: what is to be learned [B, ...].
+            targets: targets [B, ...].
 
         Returns:
             Mean loss, and sum of the scores.

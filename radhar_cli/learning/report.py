@@ -53,8 +53,7 @@ def evaluate(
     Args:
         runs: folders of runs, or weights' files.
         data: data sets, or trees of images.
-        options: what is evaluated, and which figures are drawn.
-        device: where the networks run.
+        options: options of the evaluation, and its figures.
         progress: receives the lines of the report and the images done.
 
     Raises:
@@ -329,7 +328,6 @@ def _add_audit(report: Report, name: str, data: Path, single: bool) -> None:
     """Add the figure of what tells the classes besides the movement, if data have been audited.
 
     Args:
-        report: the report.
         name: name of the data set.
         data: its path.
         single: whether it is the only one.

@@ -111,7 +111,7 @@ def train(
         data: a data set, several that are combined, or images that are open already.
         folder: folder of the run.
         progress: receives messages, steps and epochs.
-        options: what else is asked for; None is nothing.
+        options: further options; None takes the defaults.
 
     Raises:
         FolderError: data that cannot be used.

@@ -35,7 +35,7 @@ class DecibelScale:
 
     Attributes:
         range_db: range of the levels, dB.
-        reference: what the levels are relative to; a number is the power of a cell of the map that
+        reference: reference of the levels; a number is the power of a cell of the map that
             is level 255, the same for all images, in dB for unit transmit power.
     """
 

@@ -70,7 +70,7 @@ class Detection:
         elevation_deg: Limits of elevation.
         range_m: Limits of range.
         doppler_mps: Limits of radial speed, positive receding.
-        demo: What the firmware does that no line of the .cfg sets.
+        demo: Settings of the firmware that no line of the .cfg has.
     """
 
     along_range: Cfar = NO_CFAR

@@ -64,7 +64,6 @@ def field_behind_person(
     Args:
         p: Positions [3, I, M] to which the legs lead, m.
         antenna: Position of the antenna, m.
-        boxes: Boxes of the person.
         wavelength: Wavelength of the carrier, m.
     """
     dimming = np.zeros(p.shape[1:])  # sum of A^-4 - 1

@@ -110,7 +110,6 @@ def trace_people(
     there again, unshadowed, unless not `mirrored`.
 
     Args:
-        scene: what is simulated.
         motions: motions of its people, or of parts of one.
         link: antennas, wall and waveform of a channel.
         mirrored: whether people are there again by way of the room's faces.

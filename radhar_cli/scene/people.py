@@ -63,8 +63,8 @@ class _Plan(NamedTuple):
     Attributes:
         movements: movements in their order.
         pauses: pause before each, s; those that are not given are 0.
-        begin: when the first begins, s.
-        onset: when that begins which the class is named by, s; None: with the first movement.
+        begin: beginning of the first, s.
+        onset: beginning of the movement that names the class, s; None: that of the first.
     """
 
     movements: tuple[Movement, ...]

@@ -70,7 +70,6 @@ def zone_of(scene: Scene, place: tuple[float, float]) -> Zone:
     """Zone that the radar of a scene leaves for people, behind its wall and within its room.
 
     Args:
-        scene: the scene.
         place: place of a person (m), before which each of several radars is.
     """
     wall, box, x, y = wall_of(scene), scene.room.make_box(), (-inf, inf), (-inf, inf)
@@ -97,7 +96,6 @@ def distance_ahead(
 
     Args:
         torso: the torso, m.
-        antennas: the antennas.
         looks_at: place on the ground (m) that antennas without a pattern look at instead.
     """
     forward = np.array((1.0, 0.0))
@@ -117,8 +115,7 @@ def start_of(person: Person, motion: Motion) -> tuple[float, float]:
     """Range and cross-range (m) at which a person starts.
 
     Args:
-        person: person of a scene.
-        motion: what they do, if they start at the origin.
+        motion: their motion, if they start at the origin.
     """
     x, y = person.place
     starts = person.motion.range_m is not None

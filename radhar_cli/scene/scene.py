@@ -161,10 +161,10 @@ class Person:
 
     Attributes:
         scene: the scene they are in.
-        activity: what they do.
+        activity: activity of the person.
         config: config whose `subject`, `motion`, `timing` and `classes` are theirs.
         number: 0 for the sample's main person, else their place in `people`, from 1 on.
-        held: what was made of them and is needed again, by name.
+        held: objects made of them that are needed again, by name.
     """
 
     scene: "Scene"
@@ -238,10 +238,9 @@ class Scene:
     Attributes:
         config: config with every number of SCENE_KEYS fixed. Written to YAML and simulated again
             with the same activity and index, it gives the same recording.
-        activity: what the sample's main person does.
         index: number of the sample within its class; names its noise, with the seed and the class.
         subject: number of the person, or None where every sample is a person of its own.
-        attempt: how often the scene was redrawn (`on_invalid: redraw`).
+        attempt: number of times the scene was redrawn (`on_invalid: redraw`).
     """
 
     config: Config
@@ -327,7 +326,7 @@ class Scene:
         """Random stream of the noise of the scene's radar, of several its own.
 
         Args:
-            name: what the noise is.
+            name: name of the noise.
             channel: name of the receive channel; "" for the antennas of the config.
         """
         name = f"{name} channel {channel}" if channel else name
@@ -387,7 +386,6 @@ def _draw_config(config: Config, activity: Activity, draw: Draw, subject: int | 
 
     Args:
         config: config in which the person's numbers are at the top level.
-        activity: what the person does.
         draw: random choices, or the middle of everything.
         subject: number of the person, or None without named persons.
     """

@@ -40,7 +40,7 @@ class SetRecipe:
     """Steps from a published set to a data set.
 
     Attributes:
-        source: Who published it, and where.
+        source: Publisher and address of the set.
         licence: As the Hugging Face Hub calls it; "" where none is stated.
         holds: Size, classes and persons, in words.
         tested: Data that the recipe was tried on, in words.
@@ -85,7 +85,6 @@ def find_files(folder: Path, pattern: str) -> Iterator[MatchedFile]:
     Case does not matter. No link is followed out of the folder.
 
     Args:
-        folder: The folder.
         pattern: Regular expression of the last parts of a path, with slashes.
 
     Raises:

@@ -224,7 +224,7 @@ def _problem_of_length(
         radar: the radar that sends it.
         longest: its longest duration, s.
         interval: the shortest time to the next one, s.
-        right: how long it may be.
+        right: range of its duration, in words.
     """
     if isinstance(radar, Steps):
         right = f"{right} (steps * dwell_s is {show_beside(longest, interval)} s)"

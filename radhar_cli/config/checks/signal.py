@@ -160,8 +160,7 @@ def _bin_problems(c: AnyRequest, key: str, value: object, purpose: str) -> Itera
     Args:
         c: the config, whose largest recording counts.
         key: dotted key that asks for them.
-        value: its value.
-        purpose: what they are held for, in words.
+        purpose: purpose for which they are held, in words.
     """
     w = waveform_at(c, *ENDS)
     bins, pulses = w.n_bins, w.n_pulses

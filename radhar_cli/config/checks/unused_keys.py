@@ -116,7 +116,7 @@ def _of_nobody(
 
     Args:
         config: config whose numbers are those of the people.
-        activities: what these people do.
+        activities: activities of these people.
         chosen: the same as the config says it, for the reason.
     """
     for key in _keys_of_people(config):
@@ -131,7 +131,7 @@ def _describe_idle_entries(
 
     Args:
         config: config whose numbers are those of the people.
-        activities: what these people do.
+        activities: activities of these people.
         chosen: the same as the config says it, for the reason.
     """
     usual, lines = _left_out(config), list[str]()

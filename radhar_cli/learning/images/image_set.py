@@ -236,7 +236,7 @@ def shape_in_words(kind: Kind, size: tuple[int, int], channels: int) -> str:
     """Size of an image or a sequence, in words.
 
     Args:
-        kind: what the inputs are.
+        kind: kind of the inputs.
         size: (H, W) of an image or a frame; (frames, points) of clouds.
         channels: number of frames of a sequence of frames.
     """

@@ -180,7 +180,7 @@ class Task(ABC):
 
         Args:
             run: name of the run, for messages.
-            options: which figures are asked for; t-SNE and the paper's groups are of classes.
+            options: choice of figures; t-SNE and the paper's groups are of classes.
             known: names that the network knows.
 
         Raises:

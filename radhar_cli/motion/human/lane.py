@@ -49,7 +49,6 @@ def place_half_turns(lane: Lane, speed: float, arc: float, walk: WalkTimes) -> F
         lane: Straight way between turns, way before the first, loss of speed in a turn.
         speed: Walking speed on the straight, m/s.
         arc: Length of a half turn, m.
-        walk: Times of the walk.
 
     Returns:
         Distance at which each turn begins [K], m, rising. A walk that stops ends on a straight: a

@@ -217,7 +217,6 @@ class Gesturing(Repeating[G]):
 
         Args:
             t: Times [M], s.
-            trunk: Axes of the trunk.
             rest: Flexion of shoulders and of elbows at rest, each [2, M], rad.
             values: Values of the channels, each [M].
         """
@@ -244,10 +243,9 @@ class Gesturing(Repeating[G]):
         """Unit vectors of arms [3, 2, M] between hanging and hands where they are at work.
 
         Args:
-            trunk: Axes of the trunk.
             rest: Flexion of shoulders and of elbows at rest, each [2, M], rad.
-            raised: How far the hands are at work [2, M], 0 to 1.
-            hands: Where they then are, from their shoulders, in the trunk's axes [3, 2, M], m.
+            raised: Share of the way of the hands to their work [2, M], 0 to 1.
+            hands: Places of their work, from their shoulders, in the trunk's axes [3, 2, M], m.
             poles: Directions in which the elbows then bend, in the trunk's axes [3, 2, M].
         """
         places, directions = hanging_hands(self.person, *rest)

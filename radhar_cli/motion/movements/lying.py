@@ -261,10 +261,7 @@ def body_pose(
     """Pose of a body of which hip, axes and limbs are known, above a surface.
 
     Args:
-        person: Whose body.
         hip: Hip point [3, M], m.
-        pelvis: Axes of the pelvis.
-        trunk: Axes of the trunk.
         limbs: Limbs in these axes.
         surface: What knees, ankles, elbows and hands stay above.
         breath: Displacement of the chest [M], m.

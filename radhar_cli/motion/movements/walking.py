@@ -560,7 +560,7 @@ class Walking:
         """Phases of the events of a foot.
 
         Args:
-            delay: How much later its stride is than the right foot's, fraction of a stride.
+            delay: Delay of its stride to the right foot's, fraction of a stride.
 
         Returns:
             Phases [4, N + 1] of heel-off, toe-off, touch-down, and of the body above the foothold;
@@ -589,7 +589,7 @@ class Walking:
         """Changes of a foot's stride by a limp, fractions of a stride.
 
         Args:
-            delay: How much later the foot's stride is than the right one's without a limp.
+            delay: Delay of the foot's stride to the right one's without a limp.
 
         Returns:
             How much later it touches down, how much longer it stands, and how much later the body
@@ -798,10 +798,9 @@ class Walking:
         """Unit vectors of upper arms and forearms [3, 2, M] of which some hold something.
 
         Args:
-            trunk: Axes of the trunk.
             shoulders: Right and left shoulder [3, 2, M], m.
             flexion: Flexion of shoulders and elbows of arms that swing, each [2, M], rad.
-            place: Where an aid is on the floor [3, M], m.
+            place: Place of an aid on the floor [3, M], m.
             hip_ahead: Distance of the hip ahead [M], m.
             g: Share of the walk [M]: at rest the arms hang.
         """

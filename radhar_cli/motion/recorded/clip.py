@@ -129,7 +129,6 @@ def make_clip(
     """Read the frames of a recording and bring them into our form.
 
     Args:
-        file: Recording.
         joints: {our name: the file's, or a list of them} where names alone do not tell, or the key
             of the joint set in whose order the joints are.
         up: Axis of the file that points up, such as "y" or "-y"; None finds it.

@@ -105,7 +105,6 @@ def find_jumps(
     """Find seconds in which a joint is faster than people are.
 
     Args:
-        file: Recording.
         p: Positions [frames, 15, 3].
         rate: Frames per second.
         metres: Length of their unit.

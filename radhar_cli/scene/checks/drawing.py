@@ -148,7 +148,6 @@ def find_crowded(scene: Scene, last: int | None = None) -> int | None:
     Torsos are compared horizontally, 50 times a second.
 
     Args:
-        scene: scene of the people.
         last: number of the last one who is compared; None for all.
 
     Returns:

@@ -42,7 +42,7 @@ class Approach(NamedTuple):
         distance: distance, m.
         joint: name of the scatterer.
         antenna: transmitter or receiver.
-        time: when, s.
+        time: time of it, s.
     """
 
     distance: float
@@ -342,7 +342,6 @@ def _refine_nearest(
     """Find the nearest passage at every pulse where the grid cannot rule out 5 cm.
 
     Args:
-        motion: motion of the person.
         around: antennas and waveform.
         p: positions on the grid [3, I, M], m.
         pulses: pulses of the grid [M].

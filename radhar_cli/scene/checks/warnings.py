@@ -100,7 +100,6 @@ def collect_warnings(
     """Collect the warnings of a run, each once: [{kind, recordings, message}].
 
     Args:
-        config: config of the recordings.
         counts: number of recordings with each flag.
         recordings: number of all recordings; None for those of the config.
     """

@@ -53,7 +53,6 @@ def locate_skeletons(scene: Scene, motions: tuple[Motion, ...], board: Board) ->
     In an empty scene all are NaN.
 
     Args:
-        scene: what is simulated.
         motions: motions of its people, or of parts of one; the first names the joints.
         board: board that sees them.
     """
@@ -142,7 +141,6 @@ class ApparentPlaces:
 
         Args:
             joints: positions [3, joint, person, frame] in the scene, m.
-            board: the board.
             legs: legs a of the transmitter, b of the receiver.
         """
         images = [leg.image(joints).T for leg in legs]  # [frame, person, joint, 3]
@@ -185,9 +183,8 @@ def _echo_of_row(tx_images: Float, rx_images: Float, board: Board, row: list[int
     """Echo [frame, person, joint, element] of joints that a row of elements sees.
 
     Args:
-        tx_images: where the transmitters see the joints [frame, person, joint, 3], m.
-        rx_images: where the receivers do.
-        board: the board.
+        tx_images: places where the transmitters see joints [frame, person, joint, 3], m.
+        rx_images: places where the receivers see them.
         row: numbers of its virtual elements.
     """
     echoes = []

@@ -45,7 +45,7 @@ class DopplerTransform(NamedTuple):
     Attributes:
         needs: names of its inputs: signal, windows, and of a gated map the gate.
         compute: computes the power of those, in double or (`single=True`) single precision.
-        description: what the power is of, for people.
+        description: description of the power, for people.
     """
 
     needs: tuple[str, ...]

@@ -76,10 +76,7 @@ def track_torso(
     """Compute the delay of the first person's torso at every pulse [M], s.
 
     Args:
-        motions: motions of the people.
-        antennas: antennas of the radar.
         wall: wall between, or None.
-        waveform: waveform of the radar.
         rate: rate of the knots between which delays are interpolated; None for every pulse.
     """
     torso = TorsoPath(motions[0], antennas, wall)

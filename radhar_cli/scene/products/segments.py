@@ -49,7 +49,6 @@ def segments_of(
     """List the activities of a person of a stream in a recording, without gaps.
 
     Args:
-        motion: motion of the person.
         seconds: duration of the recording, s.
         classes: names of the labels; that of keeping still stands for pauses, if it is there.
     """

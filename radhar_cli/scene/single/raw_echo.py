@@ -31,7 +31,6 @@ def raw_echo(
 
     Args:
         scene: the scene; its wall must keep 5 cm from the antennas' midpoint.
-        paths: paths of the body.
         waveform: chirps and pulses.
         antennas: antennas, which leak.
         wall: wall, which echoes by itself, or None.

@@ -96,11 +96,11 @@ class Audit:
     Attributes:
         data: the data set.
         rows: rows from which classes were guessed.
-        held_out: what was held out whole: person, recording or sample.
+        held_out: unit that was held out whole: person, recording or sample.
         lines: a line for each piece of evidence.
         overlaps: duplicates, and persons in several splits.
         effort: seed and size of the forests.
-        warnings: what a reader should know.
+        warnings: warnings for the reader.
     """
 
     data: AuditedSet
@@ -279,7 +279,6 @@ def _guess(
     """Guess the class from each piece of evidence; what is constant or all missing is left out.
 
     Args:
-        evidence: evidence of the samples.
         label: [N] class of each.
         groups: numbers [N] of what is held out: usually, and where the evidence tells who it is.
         effort: size of the forests and seed.

@@ -22,10 +22,10 @@ class Evidence:
 
     Attributes:
         part: kind of what they are.
-        name: what they are, in words.
+        name: name of the features, in words.
         values: [N, D]; NaN where a sample has none.
         key: config key, column of a table, or none.
-        cure: what to write, draw or record instead.
+        cure: advice on what to write, draw or record instead.
         may_be_movement: whether the movement itself shows there, so that it is no shortcut for
             sure.
         leaves_out_missing: whether samples without a value are left out, as of numbers that a

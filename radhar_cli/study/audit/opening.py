@@ -54,7 +54,7 @@ class AuditedSet:
         laws: sentences on numbers whose laws differ by class.
         has_clouds: whether the dataset.h5 holds point clouds.
         is_simulated: whether a config can be changed.
-        image: what an image of a simulated dataset.h5 shows; None of anything else.
+        image: section `image` of a simulated dataset.h5; None of anything else.
     """
 
     where: Path

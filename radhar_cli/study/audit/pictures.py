@@ -180,7 +180,7 @@ def picture_evidence(
         label: [N] class of each.
         size: (H, W) of the first of them.
         is_simulated: whether there is a config, in which numbers can be drawn otherwise.
-        image: what a simulated image shows, where its config is known.
+        image: section `image` of simulated images, where their config is known.
     """
     outer, first, last, far, level, file_size, noise, texture = (
         np.stack([getattr(one, name) for one in features])

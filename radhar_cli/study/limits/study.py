@@ -217,7 +217,6 @@ class LimitsStudy:
         Args:
             key: dotted key of the number.
             places: samples that are drawn; () for checks and work alone, None for checks alone.
-            number: the number.
         """
         try:
             config = self.trial.config_with(key, number)
@@ -297,7 +296,6 @@ def study_limits(
     """Find how far every number of a config may go.
 
     Args:
-        trial: the config.
         keys: dotted keys that are looked at, or sections; None for all.
         seconds: time for all of it, s; what is found by then counts.
         progress: is told of every limit.

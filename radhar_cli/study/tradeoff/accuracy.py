@@ -252,7 +252,7 @@ def measure_accuracies(
     """Train networks on data of the config as it is, and of each setting that saves time.
 
     Args:
-        study: where networks lie.
+        study: the study, with its folder of networks.
         sweep: its rows receive the accuracies.
         seeds: number of networks of a setting.
         budget: time in which networks are begun.

@@ -81,7 +81,7 @@ def relative_db(compared: Complex, exact: Complex, visible: Bool | None = None) 
     Args:
         compared: signal whose error it is.
         exact: signal that it should be.
-        visible: which of the samples count; None for all.
+        visible: mask of the samples that count; None for all.
 
     Returns:
         -inf where the two are the same, None where the exact one is 0 or of another shape.

@@ -243,8 +243,6 @@ def time_setting(scenes: Scenes, setting: Setting, turn: int) -> tuple[float, fl
     """Time a setting and what it is compared with in turns, scene by scene: ms a sample, and ratio.
 
     Args:
-        scenes: scenes of the sweep.
-        setting: the setting.
         turn: number of the round, which decides with which scene it begins.
     """
     places = scenes.samples()

@@ -72,7 +72,7 @@ def extensions() -> tuple[str, ...]:
 def load_extensions() -> None:
     """Import the modules that RADHAR_EXTENSIONS names, once, which add products and activities.
 
-    Whoever asks which there are calls it first, so that no config is read without them.
+    Readers of their tables call it first, so that no config is read without them.
 
     Raises:
         RadharError: one cannot be imported.

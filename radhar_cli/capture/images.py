@@ -1,7 +1,7 @@
 """Existing images as samples: a tree of class folders, a table of files, an .npz, or Parquet.
 
 A table (CSV with commas, semicolons or tabs, or a YAML list) has a row for each image file, with
-its label and optionally who it is. An .npz has one array of images [N, H, W] (uint8 or bool; masks
+its label and optionally its person. An .npz has one array of images [N, H, W] (uint8 or bool; masks
 of 0 and 1 become 0 and 255), `label` [N], indices into `classes` or texts, and optionally `person`
 [N]; or x_train, y_train, x_test and y_test, as Keras has them. Files of Parquet are called after
 the part of the split. Columns and arrays may have any of the names in use for them.

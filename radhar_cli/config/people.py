@@ -34,8 +34,7 @@ class SubjectConfig(Section, Generic[N]):
     height_m: Annotated[N, POSITIVE, within(0.1, 10, "m"), Limits(1.0, 2.1), PERSONAL] = (
         default_draw(uniform(1.5, 1.9))
     )
-    """Stature of the person; who is smaller than 1.5 m counts as a child in proportions, weight
-    and gait."""
+    """Stature of the person; below 1.5 m it is a child's in proportions, weight and gait."""
     weight_kg: Annotated[Filled[N], POSITIVE, within(1e-3, 1e6, "kg"), PERSONAL] = default_draw(
         None
     )

@@ -1,4 +1,4 @@
-"""Read a YAML config, apply ``--set`` overrides, and say clearly what is wrong with it."""
+"""Read a YAML config, apply ``--set`` overrides, and describe its problems."""
 
 import difflib
 import json

@@ -669,7 +669,7 @@ def _fill_for_board(c: Request, radar: ArrayRadar, changed: dict[str, dict[str, 
 
 @cache
 def _uses() -> dict[str, dict[str, frozenset[str]]]:
-    """{dotted key: {model: who uses it}} of the keys that not everybody uses."""
+    """{dotted key: {model: users}} of the keys that not everybody uses."""
     uses = dict[str, dict[str, frozenset[str]]]()
     for key, people in of_kind(Request, People):
         uses.setdefault(key, {})["human"] = frozenset(users_of(key, people))

@@ -106,7 +106,7 @@ def radar_names(document: Mapping[str, Any]) -> tuple[str, ...]:
 
 
 def problems_of_radars(document: Mapping[str, Any]) -> Iterator[Problem]:
-    """Find what is wrong with the entries of `radars` as such, and with `radar_name`."""
+    """Find the problems of the entries of `radars` as such, and of `radar_name`."""
     radars = document.get(RADARS_KEY)
     if radars is None:
         return
@@ -155,7 +155,7 @@ def _misplaced_problems(key: str, entry: Mapping[str, Any]) -> Iterator[Problem]
 def _aspect_problems(
     key: str, entry: Mapping[str, Any], shared: Mapping[str, Any]
 ) -> Iterator[Problem]:
-    """Find what is wrong with where `aspect` puts a radar."""
+    """Find the problems of the place where `aspect` puts a radar."""
     written, common = entry.get(ASPECT), shared.get(ASPECT)
     for value, where in ((written, f"{key}.{ASPECT}"), (common, f"radar.{ASPECT}")):
         if value is not None and not isinstance(value, dict):

@@ -210,7 +210,7 @@ def linked(
 def links_to_all(state: str | None, names: Sequence[str]) -> tuple[str, ...] | None:
     """Links from a state of rest to where a sequence usually begins; None where there are none.
 
-    Who is in another state in which it may begin needs no link.
+    Another state in which it may begin needs no link.
     """
     firsts = first_states(names)
     if state is None or state in firsts:

@@ -68,7 +68,7 @@ class ChunkWriter:
     """Copies maps, power and slow time, a compressed chunk a sample, as the bytes that they are.
 
     Chunks are stored in runs of RUN rows, or of RUN_BYTES, dataset after dataset: the file's layout
-    does not depend on how shards cut the rows, and who reads one map reads long stretches.
+    does not depend on how shards cut the rows, and a reader of one map reads long stretches.
     """
 
     def __init__(self, file: h5py.File, check: Callable[[], None], config: AnyConfig) -> None:

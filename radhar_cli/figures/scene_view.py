@@ -42,7 +42,7 @@ class SceneView(NamedTuple):
 def view_scene(scene: Scene, motions: Sequence[Motion]) -> SceneView:
     """Compute the view of a scene: everybody's skeleton and true Doppler, in order of `motions`.
 
-    Of an empty scene there are none; maps reach as far as with who would stand there.
+    An empty scene has no skeletons; maps reach as far as with a person who would stand there.
     """
     results = record(scene, ("antennas", "wall", "waveform"), motions=tuple(motions))
     antennas, wall, waveform = results["antennas"], results["wall"], results["waveform"]

@@ -89,9 +89,9 @@ def make_path_sources(
     link: Link,
     room: Reflectors | None = None,
 ) -> list[OwnedPaths]:
-    """Make the paths of everything in a scene: of who moves, and of what stands in the room.
+    """Make the paths of everything in a scene: of people, and of the things in the room.
 
-    Where that is nothing, as in an empty scene without reflectors, there is a path of no power.
+    Where there are none, as in an empty scene without reflectors, there is a path of no power.
     """
     sources = [] if scene.is_empty else trace_people(scene, motions, link)
     if room is not None:

@@ -4,7 +4,7 @@ A person who stays in place is there. A course is laid through the place at one 
 which all of it stays within the zone that radar, wall and room leave. It is chosen among those, not
 by trying again: whether a scene is possible would depend on what people do, and where they are
 would tell it. As `motion.place.instant` is drawn, far places are at the far ends of courses: ranges
-at any instant then vary about as much as places do, whoever walks.
+at any instant then vary about as much as places do, for any walk.
 """
 
 from dataclasses import dataclass

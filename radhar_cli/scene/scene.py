@@ -304,7 +304,7 @@ class Scene:
     def people(self) -> tuple[Person, ...]:
         """Everybody in the scene, the sample's main person first.
 
-        In an empty scene it is who would stand there alone, who makes no echo: an SNR refers to
+        In an empty scene it is a person who would stand there, without an echo: an SNR refers to
         theirs, and gates follow their place.
         """
         scene = replace(self)  # a twin: with the scene itself, motions would be freed late
@@ -440,7 +440,7 @@ def _with_stream(fixed: Config, config: Config, draw: Draw) -> Config:
 
 
 def draw_people(config: Config, draws: Sequence[Draw]) -> tuple[PersonConfig, ...]:
-    """Draw `people`, with nothing left to draw; who is not there has a share of 0.
+    """Draw `people`, with nothing left to draw; an absent person has a share of 0.
 
     Args:
         config: config of the data set.

@@ -42,7 +42,7 @@ BOARD_PRODUCTS = (*FRAME_MAPS, *OF_POINTS, "points_kind", *OF_FRAMES, "cube")
 
 
 def radar_problems(c: Request) -> Iterator[Problem]:
-    """Find what does not go with the kind of radar that a request has."""
+    """Find the keys that do not go with the kind of radar of a request."""
     match c.radar:
         case BoardRadar():
             yield from board_problems(c, c.radar)
@@ -102,7 +102,7 @@ def _impulse_problems(c: Request, radar: ImpulseRadar) -> Iterator[Problem]:
 
 
 def profile_problems(c: AnyRequest) -> Iterator[Problem]:
-    """Find what does not fit range profiles, or chirps, simulated or recorded."""
+    """Find the keys that do not fit range profiles, or chirps, simulated or recorded."""
     radar = c.radar
     if not isinstance(radar, ImpulseRadar):
         if c.image.kind == "signed":
@@ -135,7 +135,7 @@ def _step_problems(radar: ImpulseRadar) -> Iterator[Problem]:
 
 
 def board_problems(c: Request, radar: BoardRadar) -> Iterator[Problem]:
-    """Find what a board cannot have, or what is not simulated for boards."""
+    """Find the keys that a board cannot have, or that are not simulated for boards."""
     board, timing = radar.header, radar.timing
     if radar.elements is None:
         right = (
@@ -271,7 +271,7 @@ def _unit_problems(radar: ArrayRadar) -> Iterator[Problem]:
 
 
 def _frame_problems(c: Request, radar: ArrayRadar) -> Iterator[Problem]:
-    """Find what does not fit frames: durations, clutter."""
+    """Find the keys that do not fit frames: durations, clutter."""
     clutter, timing = c.processing.clutter, radar.timing
     if support(c.duration_s)[0] < timing.period_s:
         frame = show_beside(timing.period_s, support(c.duration_s)[0])
@@ -342,7 +342,7 @@ def _output_problems_of_board(c: Request) -> Iterator[Problem]:
 
 
 def _missing_on_board(c: Request) -> Iterator[Problem]:
-    """Find what is simulated for one channel alone."""
+    """Find the keys that are simulated for one channel alone."""
     corner = c.receiver.noise_corner_hz
     for name, value in (
         ("tones", [one.model_dump(mode="json") for one in c.receiver.tones]),
@@ -357,7 +357,7 @@ def _missing_on_board(c: Request) -> Iterator[Problem]:
 
 
 def waveform_problems(c: AnyRequest) -> Iterator[Problem]:
-    """Find what does not fit the pulses: chirps that are too long, FFTs that are too short."""
+    """Find the keys that do not fit the pulses: chirps too long, FFTs too short."""
     radar, fft_length = c.radar, c.processing.range_fft_length
     if not radar.sweeps:
         right = f"should be left out with {radar.named}, which has no chirp"

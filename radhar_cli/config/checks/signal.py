@@ -51,7 +51,7 @@ def problems_of_maps(c: Request, names: tuple[str, ...]) -> list[Problem]:
 
 
 def processing_problems(c: AnyRequest) -> Iterator[Problem]:
-    """Find what of the processing does not fit the radar or the maps."""
+    """Find the keys of the processing that do not fit the radar or the maps."""
     names = c.maps if isinstance(c, Request) else [n for n in c.maps if n in MAPS_OF_SAMPLES]
     if (of_maps := map_problem(c, names)) is not None:
         yield of_maps

@@ -47,7 +47,7 @@ class SampleTable:
 
         Args:
             rows: rows [N] of the table.
-            by_person: whether other persons could have been seen; not where who it is is learned.
+            by_person: whether other persons could have been seen; not where the person is learned.
         """
         columns = {"recording": self.recording, "scene": self.scene}
         if by_person and self.person is not None:

@@ -50,7 +50,7 @@ class Persons(Classifier):
         return _with_split_by_recording(replace(images, classes=classes, samples=samples))
 
     def split_as_learned(self, images: ImageSet) -> ImageSet:
-        """Images with the split of `relabel`; as they are where nobody says who is seen."""
+        """Images with the split of `relabel`; as they are where the set does not name persons."""
         with suppress(FolderError):
             relabelled = self.relabel(images)
             samples = replace(images.samples, split=relabelled.samples.split)

@@ -62,7 +62,7 @@ class HumanMotion:
 
     @cached_property
     def landmarks(self) -> tuple[str, ...]:
-        """Names of joints and hip joints, and of the toes of who lies, whose feet do not stand."""
+        """Names of joints and hip joints, and of the toes of a lying person."""
         toes = any(isinstance(part, KNOWS_TOES) for part, _ in self.parts)
         return (*JOINTS, *HIPS, *(TOES if toes else ()))
 

@@ -53,7 +53,7 @@ def posture(
     Returns:
         {channel: value}; with "hands", how far the hands are on the floor, at "hands_ahead" and
         "hands_beside" (m), and how far their elbows point outwards along it, "splayed";
-        "heels", how far the shanks of who lies on the knees are lifted (rad); "feet", how far the
+        "heels", how far the shanks of a person on the knees are lifted (rad); "feet", how far the
         feet have slid ahead (m).
     """
     return {

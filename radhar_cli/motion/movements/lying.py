@@ -2,7 +2,7 @@
 
 The body turns about its long axis by a roll: 0 on the back, 90 degrees on the left side, 180 on the
 belly, -90 on the right side. Limbs are curves of the roll, a + b cos(roll) + c cos(2 roll) + d
-sin(roll), through these four postures, so that whoever turns over goes through all between them.
+sin(roll), through these four postures, so that turning over goes through all between them.
 Thighs and trunk rest on the surface at the thickness of the body's ellipsoids
 (`radhar_cli.motion.segments`); where the limbs are is a guess. In bed people spend 54 % of the time
 on a side, 38 % on the back, 7 % on the belly, and shift 1.6 times an hour (Skarpsno et al., Nat.
@@ -11,7 +11,7 @@ across and the knee drawn up, as adults most often do (Richter, VanSant and Newt
 (1989) 63); how long it takes is a guess.
 
 Breathing moves the chest ahead (Kaneko and Horie, Respir. Care 57 (2012) 1442, of people on the
-back): upwards of who lies on the back, level of who lies on a side. The belly cannot move into the
+back): upwards on the back, level on a side. The belly cannot move into the
 surface, so the back rises; that it does so as far as a chest is a guess.
 """
 

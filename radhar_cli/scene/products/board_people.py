@@ -25,7 +25,7 @@ class Skeletons(NamedTuple):
     """Joints of everybody in the middle of each frame's chirps, as the radar sees them.
 
     Attributes:
-        positions: positions [frame, person, joint, (ahead, left, up)], m; NaN of who is absent.
+        positions: positions [frame, person, joint, (ahead, left, up)], m; NaN of an absent person.
         velocities: velocities of the same shape, m/s.
         names: names of the joints.
     """

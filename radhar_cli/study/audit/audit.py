@@ -280,7 +280,7 @@ def _guess(
 
     Args:
         label: [N] class of each.
-        groups: numbers [N] of what is held out: usually, and where the evidence tells who it is.
+        groups: numbers [N] of the groups held out: usual ones, and where evidence tells the person.
         effort: size of the forests and seed.
         progress: is told of each piece.
     """

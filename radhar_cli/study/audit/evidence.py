@@ -30,7 +30,7 @@ class Evidence:
             sure.
         leaves_out_missing: whether samples without a value are left out, as of numbers that a
             movement does not have; else that one is missing may tell the class.
-        tells_who: whether it tells who it is, so that samples instead of persons are held out.
+        tells_who: whether it tells the person, so that samples instead of persons are held out.
         ranks: [N, D/2] of places of images, by which those with marks are chosen (`marks`).
     """
 

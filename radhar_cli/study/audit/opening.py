@@ -46,9 +46,9 @@ class AuditedSet:
         evidence: evidence of all N samples.
         images: images; None of a table alone.
         split: [N] 0 train, 1 validation, 2 test; None where it is not split.
-        person: [N] who it is; None where nobody says.
-        recording: [N] recording that the sample was cut from; None where nobody says.
-        scene: [N] fingerprint of person and motion; None where nobody says.
+        person: [N] person of the sample; None where it is not known.
+        recording: [N] recording that the sample was cut from; None where it is not known.
+        scene: [N] fingerprint of person and motion; None where it is not known.
         on_cue: sentences on onsets that do not vary.
         too_few_on_cue: sentences on those of which too few samples are there to tell.
         laws: sentences on numbers whose laws differ by class.

@@ -178,7 +178,7 @@ def name_evidence(files: Sequence[Path]) -> list[Evidence]:
 
 
 def window_evidence(config: MeasuredConfig) -> list[Evidence]:
-    """Evidence of where windows of recordings come from: order, length, time, and who it is."""
+    """Evidence of the origin of windows of recordings: order, length, time, and person."""
     cuts = windows(config)
     orders = _orders([(cut.part.person, cut.number) for cut in cuts])
     columns: Mapping[str, Float] = {

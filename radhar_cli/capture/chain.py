@@ -50,7 +50,7 @@ class Maps:
     board: Board | None = None
 
     def add_products_of_frames(self, products: Mapping[str, Any]) -> None:
-        """Add what a board's frames gave: maps over time to the maps, all else to the frames."""
+        """Add the products of a board's frames: maps over time to maps, all else to frames."""
         for name, product in products.items():
             if isinstance(product, PowerMap):
                 self.maps[name] = product
@@ -349,7 +349,7 @@ def _windows(
 ) -> tuple[Signal, tuple[Frames, ...]]:
     """Choose the stretches that hold a window, and the windows of STFT and FSST.
 
-    What is shortened or left out is added to `notes`.
+    Shortened windows and omitted stretches are added to `notes`.
     """
     windows = _windows_of_config(signal, config)
     lengths = signal.times.lengths - canceller.lost

@@ -163,7 +163,7 @@ class Damage:
         self.flags.append(flags)
 
     def findings(self) -> list[str]:
-        """Describe in words what was counted, a line each."""
+        """Describe the counts in words, a line each."""
         flags, words = np.concatenate(self.flags), []
         if lost := int(np.count_nonzero(flags & LOST)):
             words.append(

@@ -183,7 +183,7 @@ def _tone(
 
 
 def _has_frames(note: Mapping[str, Any]) -> bool:
-    """Whether what is known of a radar says how many chirps a frame has."""
+    """Whether the known keys of a radar give the number of chirps of a frame."""
     return "chirps" in (note.get("frame") or {})
 
 
@@ -242,7 +242,7 @@ def _frame_keys(
 
 
 def _why_frames(recording: Recording, content: Beat, turns: int) -> str | None:
-    """Return the reason why a plain radar of chirps does not fit a recording; None if it fits."""
+    """Return why a plain radar of chirps does not fit a recording; None if it fits."""
     receivers = recording.info.receivers
     if turns > 1:
         return f"has {turns} transmitters that take turns"
@@ -366,7 +366,7 @@ def read_radar(section: Mapping[str, Any], where: str = "radar") -> AnyRadar:
 
 
 def has_beam(radar: AnyRadar) -> bool:
-    """Whether the antennas of a radar take a part of what comes from beside their boresight."""
+    """Whether the antennas of a radar weaken echoes from beside their boresight."""
     return isinstance(radar, ArrayRadar) or getattr(radar, "beam", None) is not None
 
 

@@ -297,7 +297,7 @@ def _first_receivers(recording: Recording) -> list[int]:
 
 @dataclass(frozen=True)
 class DopplerCells:
-    """Cells of range-Doppler maps of a recording, and what they make of noise and of an echo."""
+    """Cells of range-Doppler maps of a recording, with their gains of noise and of an echo."""
 
     f0: float  # frequency at which Doppler is read, Hz
     prf: float  # pulses per second, Hz

@@ -144,7 +144,7 @@ def _list_tree(path: Path) -> ImageListing:
 
 
 def _read_rows(path: Path) -> list[dict[str, Any]]:
-    """Rows of a table, {name of its column: cell}; none of what is no table.
+    """Rows of a table, {name of its column: cell}; none where the file is no table.
 
     Names of columns are in lower case, with underscores for spaces and hyphens.
     """
@@ -172,7 +172,7 @@ def _name_of(names: Collection[str], known: Sequence[str]) -> str | None:
 
 
 def _image_file(folder: Path, cell: str) -> str | None:
-    """File of a cell from a folder on, whose ending may be left out; None of what is no image."""
+    """File of a cell from a folder on, whose ending may be left out; None where it is no image."""
     file = cell.strip().replace("\\", "/")
     if PurePosixPath(file).suffix.lower() in SUFFIXES:
         return file

@@ -255,7 +255,7 @@ def _missing_text(paths: Sequence[Path], missing: dict[str, str]) -> str:
 
 @dataclass
 class DumpFrames:
-    """Frames of a dump, one after the other, and what was left out of them.
+    """Frames of a dump, one after the other, and counts of the packets left out.
 
     Attributes:
         dump: Packets.

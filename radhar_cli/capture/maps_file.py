@@ -1,4 +1,4 @@
-"""maps.h5 and maps.png of a recording: what `radhar process` writes."""
+"""Files that `radhar process` writes of a recording: maps.h5 and maps.png."""
 
 import json
 from pathlib import Path

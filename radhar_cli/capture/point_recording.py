@@ -1,4 +1,4 @@
-"""The file of a recording of points: what a board sent, frame by frame (docs/guide/points.md)."""
+"""The file of a recording of points of a board, frame by frame (docs/guide/points.md)."""
 
 import json
 from collections.abc import Callable, Iterable, Sequence

@@ -1,6 +1,6 @@
 """A download of a published set becomes recordings and their manifest, by a recipe.
 
-Recordings appear whole and stay, so that what was killed goes on; one that is older than its files
+Recordings appear whole and stay, so that a killed run goes on; one that is older than its files
 is made again. All else is the way of any data set of recordings (`windows.py`).
 """
 

@@ -156,7 +156,7 @@ class Work:
             yield workers
 
     def build(self, config: "AnyConfig", out: Path, is_last: bool) -> None:
-        """Build a data set, or resume it, and print what was made.
+        """Build a data set, or resume it, and print a summary.
 
         Args:
             config: that of the data set.
@@ -175,7 +175,7 @@ class Work:
     def build_part(
         self, config: "AnyConfig", out: Path, part: "DataSetPart", merged: Path, is_last: bool
     ) -> None:
-        """Make a part of a data set, or resume it, and print what was made.
+        """Make a part of a data set, or resume it, and print a summary.
 
         Args:
             config: that of the data set.

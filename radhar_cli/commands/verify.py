@@ -49,7 +49,7 @@ def verify(
 
 
 def _refuse_unfinished(folders: list[Path]) -> None:
-    """Refuse several radars of which some data set is not made yet; say of each what makes it.
+    """Refuse several radars of which some data set is not made yet; name the command for each.
 
     Raises:
         FolderError: there are such radars, a line for each.
@@ -81,7 +81,7 @@ def _tell_of_other_scenes(folders: list[Path]) -> list[str]:
 
 
 def _is_sound(out: Path, samples: int, motion: Path | None) -> bool:
-    """Verify the data set in a folder, say what is wrong, and return whether nothing is."""
+    """Verify the data set in a folder, print its faults, and return whether it has none."""
     from radhar_cli.commands.terminal import BarProgress
     from radhar_cli.dataset.verify import verify as verify_folder
 

@@ -1,4 +1,4 @@
-"""YAML files as documents: what a file says lies over the file that its `base` names."""
+"""YAML files as documents: the keys of a file lie over the file that its `base` names."""
 
 import json
 import os
@@ -224,7 +224,7 @@ def advice_on_radars(value: object) -> str:
 
 @lru_cache(maxsize=1)
 def _names_of_radars() -> dict[str, str]:
-    """Names of the built-in radars by their spellings without what does not matter in them."""
+    """Names of the built-in radars by their plain names (`plain_name`)."""
     names = {plain_name(name): name for name in RADARS}
     for name in RADARS:
         device, _, kind = name.partition("_")

@@ -78,7 +78,7 @@ def _reference_kind(value: object) -> str:
 
 
 def _require_reference(value: object) -> object:
-    """Refuse what is neither a word of a reference nor a mapping."""
+    """Refuse a value that is neither a word of a reference nor a mapping."""
     if value not in ("noise", "peak") and _reference_kind(value) == "<word>":
         raise value_error("should be noise, peak or {dbm: NUMBER}")
     return value

@@ -23,7 +23,7 @@ def possible_maps(config: Request) -> tuple[str, ...]:
 
 
 def why_no_map(config: AnyRequest, name: str) -> str | None:
-    """Return the reason why the radar of a config cannot make a map or the cube; None if it can."""
+    """Return why the radar of a config cannot make a map or the cube; None if it can."""
     radar = config.radar
     if name in (*ANGLE_TIME_MAPS, *FRAME_MAPS, "cube"):
         why = radar.why_no_frames(name)

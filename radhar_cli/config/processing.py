@@ -142,7 +142,7 @@ class ProcessingConfig(Section):
 
     @property
     def leaves_static(self) -> bool:
-        """Whether the canceller leaves something of what stands still."""
+        """Whether the canceller leaves something of static echoes."""
         return self.clutter == "none" or (
             self.clutter == "highpass" and not self.highpass.remove_mean
         )

@@ -235,7 +235,7 @@ def load_radars(
 
 
 def _source(config: str | Path | Mapping[str, Any]) -> Path | Mapping[str, Any]:
-    """Take what a config is read from: a file, or plain values.
+    """Take the source of a config: a file, or plain values.
 
     Raises:
         ConfigError: it is neither.
@@ -773,7 +773,7 @@ def _section_of(field: FieldInfo, value: Any) -> type[BaseModel] | None:
 def _section_around(
     kind: type[BaseModel], names: list[int | str], document: Any
 ) -> type[BaseModel] | None:
-    """Section that a key of the document lies in; None below what is no section."""
+    """Section that a key of the document lies in; None below a key that is no section."""
     place: type[BaseModel] | None = kind
     for name in names[:-1]:
         document = document.get(name) if isinstance(document, dict) else None

@@ -32,7 +32,7 @@ class RecordedPart(Section):
     file: Annotated[str, Field(max_length=500)]
     """Path of the recording, from the manifest's folder on."""
     label: Annotated[str, Field(pattern=f"^{SLUG}$")]
-    """Class of what the person does."""
+    """Class of the person's activity."""
     person: Annotated[str, Field(max_length=100)] | None = None
     """Name or number of the person, where it is known."""
     start_s: Annotated[float, Field(ge=0, le=1e7, strict=True)]

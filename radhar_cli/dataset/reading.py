@@ -301,7 +301,7 @@ def open_dataset(path: str | Path) -> Dataset:
 
 
 def why_missing(path: Path) -> str:
-    """Describe the reason why a path leads to no dataset.h5, with the command that makes one."""
+    """Describe why a path leads to no dataset.h5, with the command that makes one."""
     path = path.parent if path.name == layout.DATASET else path
     target = folder_of_all_radars(path)
     if (parts := path / layout.PARTS).is_dir():

@@ -46,7 +46,7 @@ class OwnedPaths(NamedTuple):
 
     Attributes:
         source: the paths.
-        person: number of the person; 0 is the sample's own, -1 what stands in the room.
+        person: number of the person; 0 is the sample's own, -1 the things in the room.
         legs: ways of the transmitter's leg and of the receiver's leg.
     """
 

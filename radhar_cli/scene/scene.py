@@ -335,7 +335,7 @@ class Scene:
         return self.surroundings_stream(name)
 
     def surroundings_stream(self, name: str) -> np.random.Generator:
-        """Random stream of what moves besides people, the same for all radars of the scene."""
+        """Random stream of moving things besides people, the same for all radars of the scene."""
         return stream(self.config.seed, NOISE, self.activity.index, self.index, name=name)
 
 

@@ -72,7 +72,7 @@ CLOUDS: dict[str, Any] = {
 
 
 class MatchedFile(NamedTuple):
-    """A file of a folder, and what its path matched."""
+    """A file of a folder, and the match of its path."""
 
     path: Path
     inner: str  # path from the folder on, with slashes

@@ -74,7 +74,7 @@ def _cw_problems(c: Request) -> Iterator[Problem]:
 
 
 def _cw_frames_problems(radar: FramesRadar) -> Iterator[Problem]:
-    """Find what needs both channels of the mixers."""
+    """Find the keys that need both channels of the mixers."""
     if radar.output == "real":
         right = (
             "should be iq with radar.waveform: cw and radar.frame: one channel of a mixer has no "
@@ -169,7 +169,7 @@ def board_problems(c: Request, radar: BoardRadar) -> Iterator[Problem]:
 
 
 def frames_problems(c: Request, radar: FramesRadar) -> Iterator[Problem]:
-    """Find what a radar with frames cannot have, or numbers that do not fit together."""
+    """Find keys that a radar with frames cannot have, or numbers that do not fit together."""
     yield from _place_problems(radar)
     if not radar.has_range:
         yield from _cw_problems(c)
@@ -293,7 +293,7 @@ def _frame_problems(c: Request, radar: ArrayRadar) -> Iterator[Problem]:
 
 
 def _detection_problems(c: Request, radar: BoardRadar) -> Iterator[Problem]:
-    """Find what `cloud` asks for and the .cfg of a board does not have."""
+    """Find settings of `cloud` that the .cfg of a board does not have."""
     board, chain = radar.header, c.cloud.chain
     if c.cloud.boundary_box and board.box is None:
         yield _boundary_problem(radar)
@@ -308,7 +308,7 @@ def _detection_problems(c: Request, radar: BoardRadar) -> Iterator[Problem]:
 
 
 def _firmware_problems(c: Request, radar: FramesRadar) -> Iterator[Problem]:
-    """Find what `cloud` asks for and no radar has without the file of its firmware."""
+    """Find settings of `cloud` that no radar has without the file of its firmware."""
     if c.cloud.boundary_box:
         yield _boundary_problem(radar)
     if c.cloud.chain != "best":

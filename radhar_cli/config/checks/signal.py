@@ -46,7 +46,7 @@ def map_problem(c: AnyRequest, names: Iterable[str]) -> Problem | None:
 
 
 def problems_of_maps(c: Request, names: tuple[str, ...]) -> list[Problem]:
-    """Find what keeps a config's radar and processing from making maps of other names."""
+    """Find problems of a config's radar and processing with maps of other names."""
     return list(processing_problems(c.model_copy(update={"maps": names})))
 
 
@@ -107,7 +107,7 @@ def _signal_problems(c: AnyRequest) -> Iterator[Problem]:
 
 
 def _range_window_problems(c: AnyRequest) -> Iterator[Problem]:
-    """A window that leaves nothing of what the coherent sum over range reads."""
+    """A window that leaves nothing of the samples that the coherent sum over range reads."""
     processing = c.processing
     name, reads_ends = processing.range_window, processing.range_reference == "start"
     if reads_ends and name not in (None, "rectangular") and processing.range_sum == "coherent":

@@ -1,4 +1,4 @@
-"""Keys of a config that have no effect, because of what another key says."""
+"""Keys of a config that have no effect, because of another key."""
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from functools import partial
@@ -61,7 +61,7 @@ def _forget_usual_speeds(without: dict[str, str], is_scene: bool) -> None:
 def _describe_unused(
     config: Config, without: Mapping[str, str], same: Callable[[Any, Any], bool]
 ) -> list[str]:
-    """Describe keys {key: reason} that are not what they are where they are left out."""
+    """Describe keys {key: reason} whose values are not the defaults."""
     usual = _left_out(config)
     return [
         f"{key} has no effect with {why}"
@@ -160,7 +160,7 @@ def _keys_of_people(config: Config) -> Iterator[str]:
 
 
 def _why_nobody(config: Config, activities: Sequence[Activity], key: str, doing: str) -> str:
-    """Return the reason why no activity uses a number of people, with the activities that would."""
+    """Return why no activity uses a number of people, with the activities that would."""
     if all(one.motion is not None or config.files_of(one) is not None for one in activities):
         return f"{doing}, whose motion no model makes"
     users = config.users_of(key)

@@ -263,7 +263,7 @@ def body_pose(
     Args:
         hip: Hip point [3, M], m.
         limbs: Limbs in these axes.
-        surface: What knees, ankles, elbows and hands stay above.
+        surface: Height that knees, ankles, elbows and hands stay above.
         breath: Displacement of the chest [M], m.
     """
     points = {}

@@ -746,7 +746,7 @@ class Walking:
 
     @cached_property
     def _aid_track(self) -> FootTrack | None:
-        """Course of what is set on the floor ahead, None where nothing is."""
+        """Course of the aid on the floor ahead; None without one."""
         aid = self.gait.held
         if not isinstance(aid, Aid) or aid.down is None:
             return None
@@ -777,7 +777,7 @@ class Walking:
         return FootTrack(self.person, falls, 0.0, aid.lift * self.person.stature, 0.0)
 
     def _held_place(self, t: Float, x: Float, y: Float, heading: Float | None) -> Float | None:
-        """Place [3, M] (m) of what is set on the floor, seen by the walker at x, y and heading."""
+        """Place [3, M] (m) of the aid on the floor, seen by the walker at x, y and heading."""
         if self._aid_track is None:
             return None
         place = self._aid_track(t)

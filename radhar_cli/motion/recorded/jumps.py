@@ -42,7 +42,7 @@ def find_poses_apart(p: Float, rate: float, metres: float) -> tuple[int, int, tu
         metres: Length of their unit.
 
     Returns:
-        First and last frame of the movement, and what there is to say of those that are left out.
+        First and last frame of the movement, and remarks on the frames that are left out.
     """
     first, after = _held_frames(p * metres, rate), _held_frames(p[::-1] * metres, rate)
     if len(p) - first - after < MIN_FRAMES:

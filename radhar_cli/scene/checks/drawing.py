@@ -34,7 +34,7 @@ DRAWS_OF = {Redrawn.NOTHING: 1, Redrawn.NUMBERS: FAR_DRAWS, Redrawn.CHOICES: FAR
 def draw_valid_scene(
     config: Config, activity: Activity, index: int, attempts: int | None = None
 ) -> tuple[Scene, Flags]:
-    """Draw one sample, check it and apply `on_invalid`; return it and what to warn of.
+    """Draw one sample, check it and apply `on_invalid`; return it and its warnings.
 
     Args:
         config: config of the data set.

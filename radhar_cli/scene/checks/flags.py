@@ -1,4 +1,4 @@
-"""Flags of a scene: what there is to warn of, and how that is said."""
+"""Flags of a scene: warnings, and their wording."""
 
 from collections.abc import Mapping
 from enum import IntFlag

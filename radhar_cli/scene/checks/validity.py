@@ -206,7 +206,7 @@ class Surroundings:
 
     @classmethod
     def of(cls, scene: Scene, person: Person) -> "Surroundings":
-        """Collect what a person of a scene is checked against."""
+        """Collect the surroundings that a person of a scene is checked against."""
         config, gate_m = scene.config, scene.config.processing.gate_m
         is_gated = config.processing.range_sum == "gated"
         has_segments = config.body.scatterers == "segments"

@@ -67,7 +67,7 @@ def _folding_warnings(config: Config) -> list[str]:
 
 
 def scene_warnings(scene: Scene) -> list[str]:
-    """Check one scene, which keeps 5 cm from antennas, and return what to warn of, in words."""
+    """Check one scene, which keeps 5 cm from antennas, and return its warnings, in words."""
     number = find_crowded(scene)
     if number is not None:
         raise SceneError(f"{scene.name}: {describe_crowd(number)}; {CROWDED}")

@@ -347,7 +347,7 @@ def receive_cube(
         echo: echo of all that moves.
         noise: noise of the samples.
         scene: scene that draws the errors.
-        faces_echo: samples [virtual, sample] of what stands still in every loop, or None.
+        faces_echo: samples [virtual, sample] of static echoes, the same in every loop, or None.
     """
     cube: Complex = echo.cube
     if faces_echo is not None:
@@ -468,7 +468,7 @@ def compute_range_bins(
     Returns:
         The bins [virtual, bin, pulse].
 
-    Raw samples go through the canceller, not bins: nothing is left then of what stands still. Sum
+    Raw samples go through the canceller, not bins: nothing is left then of static echoes. Sum
     and difference of two transmitters that send together have the power of the two.
     """
     scale = board.signs.copy()

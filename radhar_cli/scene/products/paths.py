@@ -26,7 +26,7 @@ from radhar_cli.scene.scene import Scene
 
 
 def scene_products(config: Config) -> Iterator[Product]:
-    """Rows of what a scene is made of, whatever makes its echo."""
+    """Rows of the parts of a scene, for either engine."""
     needs = ("motions", "antennas", "wall", "waveform")
     through = "through the wall" if config.wall is not None else "through air"
     yield Product("waveform", ("scene",), waveform_of, "chirps and pulses")

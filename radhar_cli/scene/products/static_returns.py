@@ -52,7 +52,7 @@ def add_static_returns(
     antennas: Antennas,
     wall: Wall | None,
 ) -> tuple[Impairment, ...]:
-    """Add what stands still to the impairments of a receiver."""
+    """Add static returns to the impairments of a receiver."""
     return (*receiver, make_static_returns(scene, waveform, antennas, wall))
 
 

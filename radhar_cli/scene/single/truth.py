@@ -58,7 +58,7 @@ class PathTruth(NamedTuple):
         delay: two-way delays [I, M], s.
         amplitude: amplitudes [I, M], for unit transmit power.
         kind: faces that the transmitter's leg and the receiver's leg meet, as "floor/-" [I].
-        person: number of the person [I]; -1 is what stands in the room.
+        person: number of the person [I]; -1 is the things in the room.
         scatterer: number of the scatterer among those of the person [I].
         bounces: number of faces that both legs meet [I].
     """

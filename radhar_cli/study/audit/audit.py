@@ -144,7 +144,7 @@ def audit(
         path: dataset.h5 or its folder, a tree of images, or a CSV file with a column `class`.
         progress: is told how far it is.
         map_name: map whose images are looked at; None takes the first.
-        table: CSV file with what else is known of each sample; None for nothing.
+        table: CSV file of further columns of the samples; None for nothing.
         effort: size of the forests and seed; None is the usual one.
         max_samples: largest number of samples of a class from which it is guessed, drawn at random.
 
@@ -276,7 +276,7 @@ def _guess(
     effort: Effort,
     progress: Progress,
 ) -> tuple[AuditLine, ...]:
-    """Guess the class from each piece of evidence; what is constant or all missing is left out.
+    """Guess the class from each piece of evidence; constant and empty evidence is left out.
 
     Args:
         label: [N] class of each.

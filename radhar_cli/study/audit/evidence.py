@@ -7,7 +7,7 @@ from radhar_cli.numerics.arrays import Float
 
 
 class EvidencePart(StrEnum):
-    """Kinds of what the class is guessed from; the value is what tables and files call it."""
+    """Kinds of evidence from which the class is guessed; the value is its name in tables."""
 
     NUMBERS = "numbers"  # of scenes
     RECORDINGS = "recordings"  # order, length, names of files, columns of a table
@@ -21,7 +21,7 @@ class Evidence:
     """Features from which the class is guessed, and what to do where that works.
 
     Attributes:
-        part: kind of what they are.
+        part: kind of the features.
         name: name of the features, in words.
         values: [N, D]; NaN where a sample has none.
         key: config key, column of a table, or none.

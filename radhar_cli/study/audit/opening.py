@@ -89,7 +89,7 @@ def open_for_audit(path: Path, map_name: str | None, table: Path | None) -> Audi
     Args:
         path: dataset.h5 or its folder, a tree of images, or a CSV file with a column `class`.
         map_name: map whose images are looked at; None takes the first.
-        table: CSV file with what else is known of each sample; None for nothing.
+        table: CSV file of further columns of the samples; None for nothing.
 
     Raises:
         FolderError: a file cannot be used.

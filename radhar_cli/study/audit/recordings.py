@@ -35,7 +35,7 @@ RECORD_ALIKE = "record each class at several times, in turn, for the same length
 
 @dataclass(frozen=True)
 class RecordingTable:
-    """A table of what is known of samples: texts by column [N], "" where nothing is said."""
+    """A table of samples: texts by column [N], "" where a cell is empty."""
 
     path: Path
     columns: dict[str, list[str]]

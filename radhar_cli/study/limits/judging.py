@@ -93,7 +93,7 @@ CLEAN = Judgement()
 
 @dataclass
 class ConfigTrial:
-    """A config file, and what it comes to with other numbers."""
+    """A config file, and its judgements with other numbers."""
 
     values: dict[str, Any]  # plain values of the file
     folder: Path

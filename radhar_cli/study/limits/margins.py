@@ -89,7 +89,7 @@ def margins_of(scenes: Sequence[Scene], reaches: Sequence[Reach]) -> list[Margin
 
 
 def counted_work(config: Config) -> dict[str, float]:
-    """Numbers of what a sample of a config consists of; each costs in proportion, at most.
+    """Counts of the parts of a sample of a config; each costs in proportion, at most.
 
     Pulses, samples of all chirps where they are held, windows times their length, pixels, people
     and points of bodies; of the first activity, by the middle of all draws.

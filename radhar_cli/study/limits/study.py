@@ -112,7 +112,7 @@ class KeySide:
 
     @property
     def first(self) -> float:
-        """End of what the config has now."""
+        """End of the range that the config draws from now."""
         return self.number.range[self.side is RangeSide.HIGH]
 
 

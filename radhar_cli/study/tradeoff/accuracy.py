@@ -91,7 +91,7 @@ class AccuracyStudy:
     sizes: Sizes = Sizes()
 
     def measure(self, setting: Overrides, seeds: int, budget: Budget) -> AccuracyNumbers | None:
-        """Accuracy of networks that learned from a setting; what is there is not made again.
+        """Accuracy of networks that learned from a setting; earlier runs are not repeated.
 
         Args:
             setting: overrides of the setting; none for the config as it is.
@@ -125,7 +125,7 @@ class AccuracyStudy:
         return AccuracyNumbers(by_seed, *Interval.of(by_seed), tested_on)
 
     def obstacle(self, setting: Overrides) -> str | None:
-        """Return the reason why no network of classes can learn from a setting; None if one can."""
+        """Return why no network of classes can learn from a setting; None if one can."""
         config = self.scenes.config(setting)
         if config.stream is not None:
             return "streams have no single class"

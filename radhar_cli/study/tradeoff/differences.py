@@ -1,4 +1,4 @@
-"""Differences of what two settings show: pictures, points, and the signals behind them."""
+"""Differences of two settings: pictures, points, and the signals behind them."""
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass

@@ -77,7 +77,7 @@ class Setting:
 
     @property
     def base_name(self) -> str:
-        """Name of what its data are compared with."""
+        """Name of the setting that its data are compared with."""
         return ", ".join(one.replace("=", ": ", 1) for one in self.base) or DEFAULT
 
 

@@ -459,8 +459,8 @@ def validated(
         kind: class of the config.
         document: plain values, as a YAML file has them.
         where: file that messages name for keys without a place.
-        places: {dotted key: file:line} of what stands in it, or in a file under it.
-        options: {dotted key: option} of what an option of the command line says instead.
+        places: {dotted key: file:line} of its keys, and of those of files under it.
+        options: {dotted key: option} of keys that an option of the command line gives.
         written: places of the document's keys in a file of several radars; None in others.
 
     Raises:

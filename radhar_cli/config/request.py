@@ -1,4 +1,4 @@
-"""All sections together: what a data set is asked for, not yet checked across sections."""
+"""All sections of a data set together, not yet checked across sections."""
 
 from collections.abc import Iterable, Mapping, Sequence
 from contextlib import suppress
@@ -200,7 +200,7 @@ class Request(Section):
         )
 
     def filled(self) -> Self:
-        """This config, in which what is null and has a default by model takes it.
+        """This config, in which null keys take their defaults by model.
 
         So do activities that a number by activity does not name.
         """
@@ -260,7 +260,7 @@ class Request(Section):
         return self.model_copy(update=changed)
 
     def _name_classes(self) -> None:
-        """Call what is done by our names, and enter movements that are classes in `classes`."""
+        """Call activities by our names, and enter movements that are classes in `classes`."""
         words = dict(self._other_words)
         for own_class in self.classes.values():
             if isinstance(own_class, SequenceConfig):
@@ -646,7 +646,7 @@ def _pose_of_cfg(radar: Any) -> dict[str, float]:
 
 
 def _fill_for_board(c: Request, radar: ArrayRadar, changed: dict[str, dict[str, Any]]) -> None:
-    """Note the defaults that a board has of its own, of what was not given."""
+    """Note the defaults that a board has of its own, for keys that are not given."""
     try:
         _ = radar.timing
     except CaptureError as error:

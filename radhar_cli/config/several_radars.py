@@ -142,7 +142,7 @@ def problems_of_radars(document: Mapping[str, Any]) -> Iterator[Problem]:
 
 
 def _misplaced_problems(key: str, entry: Mapping[str, Any]) -> Iterator[Problem]:
-    """Find what an entry of `radars` has that is one for all radars, or that holds a radar."""
+    """Find keys of an entry of `radars` that are one for all radars, or that hold a radar."""
     for name, value in entry.items():
         if name in _OF_ALL:
             right = f"is one for all radars; should stand beside {RADARS_KEY}, not in it"

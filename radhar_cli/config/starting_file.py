@@ -1,4 +1,4 @@
-"""A config to start from, out of the schema: every key, its default, and what it means."""
+"""A config to start from, out of the schema: every key, its default, and its meaning."""
 
 import inspect
 import json

@@ -239,7 +239,7 @@ def _draw_activity(
 def _draw_bout(
     activity: Activity, classes: Mapping[str, ClassConfig], key: str, chance: StreamChance
 ) -> _Bout:
-    """Draw what an activity consists of in one bout."""
+    """Draw the movements of an activity in one bout."""
     section = classes.get(activity.slug)
     if not isinstance(section, SequenceConfig):
         count = len(activity.movements)

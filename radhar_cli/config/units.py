@@ -1,4 +1,4 @@
-"""Units of keys: what a value with a unit, or a key in another unit, would be in ours."""
+"""Units of keys: values with a unit, or under a key in another unit, converted into ours."""
 
 import re
 from collections.abc import Iterable

@@ -253,7 +253,7 @@ def _radar_in_words(config: Config) -> str:
 
 
 def _maps(data: Dataset) -> str:
-    """Write the table of maps with their axes, and what a level means."""
+    """Write the table of maps with their axes, and the meaning of a level."""
     lines = []
     for name in data.config.maps:
         reach = "/extent of dataset.h5"

@@ -1,4 +1,4 @@
-"""Parts of the data card that say what is in a data set: classes, arrays, people, streams."""
+"""Parts of the data card on the content of a data set: classes, arrays, people, streams."""
 
 import numpy as np
 

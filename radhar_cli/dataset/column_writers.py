@@ -50,7 +50,7 @@ def column_writers(
 
     Args:
         file: the unfinished dataset.h5; the datasets of /scene are in it.
-        check: raises what went wrong with the file, of `new_hdf5`.
+        check: raises errors of writing the file, of `new_hdf5`.
         config: config of the data set.
         table: the unfinished scenes.csv.
 

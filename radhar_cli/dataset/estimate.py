@@ -154,7 +154,7 @@ def estimate(
 
 
 class WrittenSamples(NamedTuple):
-    """Size of samples in the HDF5 file, and what it takes to write them."""
+    """Size of samples in the HDF5 file, and the processor time to write them."""
 
     sample_bytes: float  # of each
     sample_seconds: float  # processor time of each, s
@@ -162,7 +162,7 @@ class WrittenSamples(NamedTuple):
 
 
 def encode_samples(config: Config, rows: Sequence[SampleRow]) -> WrittenSamples:
-    """Encode samples as a shard, and one alone, to see what samples and shards cost.
+    """Encode samples as a shard, and one alone, to tell the cost of samples and shards.
 
     Args:
         config: that of the data set.

@@ -137,7 +137,7 @@ def _common_extent(extents: h5py.Dataset) -> tuple[float, float, float, float] |
 
 
 def _describe_columns_of_map(file: h5py.File, config: AnyConfig, name: str) -> None:
-    """Write the attributes of what is stored of a map besides its levels: power, column labels."""
+    """Write the attributes of a map's arrays besides its levels: power, column labels."""
     if config.output.power is not None:
         file[f"power/{name}"].attrs["unit"] = f"dB below /largest_db/{name}"
         file[f"power/{name}"].attrs["meaning"] = "resized power, not clipped; rows as in /maps"

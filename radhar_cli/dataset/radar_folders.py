@@ -13,10 +13,10 @@ RADARS = "radars.json"
 
 
 def reserve_radars(folder: Path, names: Iterable[str]) -> dict[str, Path]:
-    """Take a folder for what is made of several radars, and write the file that lists them.
+    """Take a folder for the data sets of several radars, and write the file that lists them.
 
     Args:
-        folder: the folder, which need not exist; what its radars' folders hold is not looked at.
+        folder: the folder, which need not exist; folders of its radars are not looked into.
         names: names of the radars.
 
     Returns:

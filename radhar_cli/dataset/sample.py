@@ -79,7 +79,7 @@ class StoredSample(NamedTuple):
 
 
 class SampleRow(NamedTuple):
-    """One row of a data set: a sample, the numbers of its scene, and what there is to warn of."""
+    """One row of a data set: a sample, the numbers of its scene, and its warnings."""
 
     sample: StoredSample
     values: Float  # numbers of `scene_fields.fields` [field]
@@ -105,7 +105,7 @@ def synthesise(scene: Scene, plan: Plan, config: Config) -> StoredSample:
 
 
 def store(recording: Results, scene: Scene, config: Config) -> StoredSample:
-    """Collect what a data set stores of a scene's products.
+    """Collect the products of a scene that a data set stores.
 
     Args:
         recording: products of the plan of a data set.

@@ -145,7 +145,7 @@ def encode_shard(
 
 
 def _checksum(owner: str, start: int, stop: int, content: memoryview) -> str:
-    """SHA-256 of what a shard says of itself, and of its content, in hex."""
+    """SHA-256 of a shard's owner, rows and content, in hex."""
     digest = hashlib.sha256(f"{owner} {start} {stop}\n".encode())
     digest.update(content)
     return digest.hexdigest()

@@ -1,4 +1,4 @@
-"""Samples made on trial, by the processes of a build, to see what a data set will cost."""
+"""Samples made on trial, by the processes of a build, to estimate the cost of a data set."""
 
 import os
 from collections.abc import Iterator, Mapping, Sequence
@@ -109,7 +109,7 @@ class Trial(NamedTuple):
 
     @property
     def samples(self) -> tuple[TrialSample, ...]:
-        """Samples that tell what one takes: the further ones, or else the first."""
+        """Samples that tell the time of one: the further ones, or else the first."""
         return self.further or self.first
 
 

@@ -154,7 +154,7 @@ def _verify_attributes(data: Dataset, report: Verification) -> None:
 
 
 def _verify_config_and_table(data: Dataset, folder: Path, report: Verification) -> None:
-    """Compare config.yaml and scenes.csv with what dataset.h5 says."""
+    """Compare config.yaml and scenes.csv with dataset.h5."""
     for name in (CONFIG, SCENES):
         if not (folder / name).exists():
             report.problems.append(f"{name}: is missing")

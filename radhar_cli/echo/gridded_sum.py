@@ -103,7 +103,7 @@ def _kernel(z: Float) -> Float:
 
 @lru_cache(maxsize=16)
 def _window(samples: int) -> tuple[tuple[Coefficients, ...], Complex]:
-    """Weights of the points, and what the window leaves of each sample.
+    """Weights of the points, and factors that undo the window for each sample.
 
     Returns:
         Coefficients [WIDTH, DEGREE + 1] of the powers of the place of a beat between two points,

@@ -108,7 +108,7 @@ _SQUARES_BY[: REACH + 1] = np.square(SHIFTED_BY)
 
 
 class PathsAtKnots(NamedTuple):
-    """Knots that resolve the motion of a recording, and what they show."""
+    """Knots that resolve the motion of a recording, and the motion that they show."""
 
     step: int  # pulses from knot to knot; 1 where nothing is interpolated
     moving: Bool  # which paths change at all [I]
@@ -179,7 +179,7 @@ def mean_power(source: PathSource, waveform: Waveform, per_second: float) -> flo
 
 
 def _excess(paths: Paths, w: Waveform, spacing: Spacing) -> float:
-    """The largest change from one knot to the next, in units of what the spacing allows."""
+    """The largest change from one knot to the next, over the change that the spacing allows."""
     moved, least, every = 0.0, 1.0, max(1, len(paths.delay) // COMPARED)
     rows = every * max(1, BLOCK // paths.delay.shape[1])
     for start in range(0, len(paths.delay), rows):  # so that it stays in the cache

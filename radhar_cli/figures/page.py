@@ -37,7 +37,7 @@ def page_of_rows(
         margin: space beside and above the panels, inches.
 
     Returns:
-        The figure, and each panel with what it is to show.
+        The figure, and each panel with its content.
     """
     columns = max(map(len, rows.values()))
     figure = page(size[0] * columns + margin[0], size[1] * len(rows) + margin[1])

@@ -64,6 +64,6 @@ def image_channels_of(model: str) -> int:
 
 
 def load_place(place: str) -> Any:
-    """Import what "module:name" names."""
+    """Import the object named "module:name"."""
     module, _, name = place.partition(":")
     return getattr(import_module(module), name)

@@ -251,7 +251,7 @@ def predict_paths(
         map_name: map of a data set; None is the one of the training.
         split: split of a data set.
         resize: bring images to the model's size.
-        say: receives what was done to make the images fit.
+        say: receives notes on images that were made to fit.
 
     Raises:
         RunError: the run is damaged, or finds no classes.

@@ -133,7 +133,7 @@ def numbers_of_share(key: str, right: Float, groups: Groups) -> dict[str, Any]:
 
     Args:
         key: key of the share, such as accuracy.
-        right: [N] 1 of what is right, 0 of what is not, or shares of it.
+        right: [N] 1 where right, 0 where wrong, or shares.
         groups: groups of them that vary together.
     """
     interval = None if _are_too_few(groups) else list(share_interval(right, groups.number))
@@ -162,7 +162,7 @@ def interval_in_words(interval: Sequence[float] | None, over: Mapping[str, Any])
 
 
 def ends_in_words(ends: Sequence[float] | None, unit: str, over: Mapping[str, Any]) -> str:
-    """An interval in brackets, with what was drawn anew unless it was single samples.
+    """An interval in brackets, with the unit that was drawn anew unless it was single samples.
 
     Args:
         ends: low and high end; None of too few groups.

@@ -43,7 +43,7 @@ class Totals:
 
 
 class Learner:
-    """A network on its device, the task that it learns, and what it learns with.
+    """A network on its device, the task that it learns, and its optimiser.
 
     Attributes:
         model: network that is trained.

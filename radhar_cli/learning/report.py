@@ -128,7 +128,7 @@ def _begin_report(
 
 @dataclass
 class _Evaluation:
-    """Evaluation under way: what is found goes to a report, run by run and set by set."""
+    """Evaluation under way: results go to a report, run by run and set by set."""
 
     report: Report
     options: EvalOptions
@@ -215,7 +215,7 @@ class _Evaluation:
 
 
 def _chosen_by(run: Run, eval_set: EvalSet, numbers: Mapping[str, Any]) -> str:
-    """Sentence that these images chose the epoch, and what to do for an accuracy of others."""
+    """Sentence that these images chose the epoch, and advice for an accuracy of others."""
     count, epochs = numbers["chose_the_epoch"], len(run.history)
     part = eval_set.split if count == numbers["images"] else f"{count} of these images"
     best = f"the best of {epochs} epochs" if epochs else "the best epoch"
@@ -325,7 +325,7 @@ def _show_filters(report: Report, runs: Sequence[Run]) -> None:
 
 
 def _add_audit(report: Report, name: str, data: Path, single: bool) -> None:
-    """Add the figure of what tells the classes besides the movement, if data have been audited.
+    """Add the figure of the audit's evidence, if data have been audited.
 
     Args:
         name: name of the data set.

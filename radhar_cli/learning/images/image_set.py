@@ -80,7 +80,7 @@ class Chosen:
 
 @dataclass(frozen=True)
 class ImageSet:
-    """Images or sequences of one size, and what is known of each; N is their number."""
+    """Images or sequences of one size, and a table of them; N is their number."""
 
     where: Path  # file or folder that the images came from
     map: str | None  # name of the map, None for a tree that names none

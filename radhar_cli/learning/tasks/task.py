@@ -112,7 +112,7 @@ class Task(ABC):
             images.rows(split)
 
     def match(self, images: ImageSet, known: Names, names: Mapping[str, str | None]) -> ImageSet:
-        """Bring labelled images to what a trained network knows.
+        """Bring labelled images to the names that a trained network knows.
 
         Args:
             images: the set, as it was opened.
@@ -136,7 +136,7 @@ class Task(ABC):
     # The network: what it gives, and how good that is.
 
     def names(self, known: Names) -> tuple[str, ...]:
-        """Names of what the outputs of the network stand for."""
+        """Meanings of the outputs of the network, by name."""
         return known.classes
 
     def outputs(self, known: Names) -> Outputs:

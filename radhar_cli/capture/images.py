@@ -104,18 +104,18 @@ def _list_archives(folder: Path, paths: Sequence[Path], packed: bool) -> ImageLi
             refuse_outside(path, folder)
         with parser_errors_as_capture_errors(str(path)):
             regular_size(path)
-        held, name = _load_archive(path, packed), path.relative_to(folder).as_posix()
+        archive, name = _load_archive(path, packed), path.relative_to(folder).as_posix()
         with path.open("rb") as file:
             checksums[name] = hashlib.file_digest(file, "sha256").hexdigest()
-        sizes.add((held.images.shape[1], held.images.shape[2]))
+        sizes.add((archive.images.shape[1], archive.images.shape[2]))
         parts += [
             {
                 "file": f"{name}/{number}",
-                "label": str(held.label[number]),
-                "person": None if held.person is None else str(held.person[number]),
-                **({} if held.split is None else {"split": str(held.split[number])}),
+                "label": str(archive.label[number]),
+                "person": None if archive.person is None else str(archive.person[number]),
+                **({} if archive.split is None else {"split": str(archive.split[number])}),
             }
-            for number in range(len(held.images))
+            for number in range(len(archive.images))
         ]
     if len(sizes) > 1:
         raise CaptureError(f"{folder}: images have several sizes; should have one")
@@ -237,13 +237,13 @@ def _load_archive(path: Path, packed: bool) -> ImageArchive:
 def _load_parquet(path: Path, packed: bool, changed: int) -> ImageArchive:
     """Read the images of Parquet, whose part of the split its name begins with."""
     del packed, changed
-    held = read_parquet_images(path, (*IMAGES, *FILES), LABELS, PERSONS)
+    stored = read_parquet_images(path, (*IMAGES, *FILES), LABELS, PERSONS)
     split = SPLIT_WORDS.get(re.split(r"[-_.]", path.name.lower())[0])
     return ImageArchive(
-        held.levels,
-        np.array(held.labels, object),
-        None if held.persons is None else np.array(held.persons, object),
-        None if split is None else np.repeat(split, len(held.labels)),
+        stored.levels,
+        np.array(stored.labels, object),
+        None if stored.persons is None else np.array(stored.persons, object),
+        None if split is None else np.repeat(split, len(stored.labels)),
     )
 
 

@@ -136,10 +136,10 @@ def _sources(modules: Iterable[str], extensions: tuple[str, ...]) -> Iterator[Pa
             continue
         yield path
         for value in [*vars(module).values()]:
-            held = value.__name__ if isinstance(value, ModuleType) else None
-            held = held or getattr(value, "__module__", None)
-            if isinstance(held, str):
-                waiting.append(held)
+            module_name = value.__name__ if isinstance(value, ModuleType) else None
+            module_name = module_name or getattr(value, "__module__", None)
+            if isinstance(module_name, str):
+                waiting.append(module_name)
 
 
 def _file_of(module: ModuleType) -> Path | None:

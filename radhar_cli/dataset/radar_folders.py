@@ -27,20 +27,20 @@ def reserve_radars(folder: Path, names: Iterable[str]) -> dict[str, Path]:
     """
     listed = sorted(names)
     refuse_file(folder)
-    held = radars_of(folder)
-    if held and held != listed:
+    stored_radars = radars_of(folder)
+    if stored_radars and stored_radars != listed:
         raise FolderError(
-            f"{folder}: holds the radars {', '.join(held)}, not {', '.join(listed)}; choose an "
-            "empty folder"
+            f"{folder}: holds the radars {', '.join(stored_radars)}, not {', '.join(listed)}; "
+            "choose an empty folder"
         )
-    if not held:
+    if not stored_radars:
         refuse_foreign_files(folder, f"{RADARS} of several radars", allowed=())
     else:
         refuse_foreign_files(folder, "radar of these names", allowed=(RADARS, *listed))
     folders = {name: folder / name for name in listed}
     for path in (*folders.values(), folder / RADARS):
         refuse_links(folder, path)
-    if not held:
+    if not stored_radars:
         folder.mkdir(parents=True, exist_ok=True)
         write_text(folder / RADARS, json.dumps({"radars": listed}) + "\n")
     return folders

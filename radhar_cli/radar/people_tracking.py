@@ -35,12 +35,12 @@ class Cosines:
 
     @property
     def step(self) -> float:
-        """Distance from one to the next."""
+        """Difference of a cosine and the next."""
         return -self.first * self.step_deg / self.half_view_deg
 
     @cached_property
     def values(self) -> Float:
-        """All of them."""
+        """All cosines of the grid, ascending."""
         count = floor(2 * self.half_view_deg / self.step_deg + _ROUNDING) + 1
         values: Float = self.first + np.arange(count) * self.step
         return values

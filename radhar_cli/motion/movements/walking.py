@@ -686,17 +686,17 @@ class Walking:
         rows = self._curves @ curves.basis(u)
         rows *= g
         surge, aside, yaw, roll, twist, *arms = rows
-        nothing = np.zeros(u.size)
+        zero = np.zeros(u.size)
         return BodyChannels(
             hip=np.array([surge, aside]),
             pelvis_yaw=yaw,
             pelvis_roll=roll,
             pitch=self.gait.trunk_pitch * g,
             twist=twist,
-            lean=self._limping_lean(u) * g if self.gait.limp else nothing,
+            lean=self._limping_lean(u) * g if self.gait.limp else zero,
             shoulders=np.array(arms[:2]),
             elbows=np.array(arms[2:]) + self.person.elbow,
-            hands=(nothing, nothing, nothing, nothing),
+            hands=(zero, zero, zero, zero),
         )
 
     def _stance(self, t: Float, distance: Float, idle: IdleState, share: Float) -> Stance:

@@ -12,7 +12,7 @@ def did_you_mean(name: str, known: Iterable[str], otherwise: str, similar: float
     Args:
         name: as somebody wrote it.
         known: names that could be meant.
-        otherwise: what is returned where no name is similar.
+        otherwise: text that is returned where no name is similar.
         similar: least ratio of `difflib` from which a name is suggested, 0 to 1.
     """
     near = difflib.get_close_matches(name, list(known), n=1, cutoff=similar)
@@ -29,12 +29,12 @@ def how_to_install(*modules: str) -> str:
 
 
 def describe_schema(version: int, known: int, otherwise: str = "") -> str:
-    """Say what is wrong with the version of a file's layout, and what would be right.
+    """Describe the problem with the version of a file's layout, and the version that is right.
 
     Args:
         version: the file's.
         known: the one that this radhar reads and writes.
-        otherwise: what to do about a file of an earlier version.
+        otherwise: advice on a file of an earlier version.
     """
     if version > known:
         return (

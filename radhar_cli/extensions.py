@@ -1,4 +1,4 @@
-"""What a user adds: products of their own, in the plan of every scene and data set.
+"""Extensions of a user: products of their own, in the plan of every scene and data set.
 
     from radhar_cli.extensions import add_product
 
@@ -72,7 +72,7 @@ def extensions() -> tuple[str, ...]:
 def load_extensions() -> None:
     """Import the modules that RADHAR_EXTENSIONS names, once, which add products and activities.
 
-    Whoever asks which there are calls it first, so that no config is read without them.
+    Readers of their tables call it first, so that no config is read without them.
 
     Raises:
         RadharError: one cannot be imported.

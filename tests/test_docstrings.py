@@ -8,8 +8,10 @@ import pytest
 
 PACKAGE = Path(__file__).resolve().parents[1] / "radhar_cli"
 PATHS = sorted(PACKAGE.rglob("*.py"))
-# A sentence that begins so leaves its reader to ask "of what?".
-FRAGMENT = re.compile(r"(Of|As|With|By|From|To|The same|Amplitude\.|That|Those)\b")
+# A sentence that begins so leaves its reader to ask "of what?", or names no subject.
+FRAGMENT = re.compile(
+    r"(Of|As|With|By|From|To|The same|Amplitude\.|That|Those|What|How|Why|Who|Where|When|Say)\b"
+)
 
 Function = ast.FunctionDef | ast.AsyncFunctionDef
 
@@ -119,7 +121,16 @@ def test_every_text_names_its_subject() -> None:
 
 @pytest.mark.parametrize(
     ("text", "is_fragment"),
-    [("Of walking.", True), ("Walking speed.", False), ("As the floor.", True), ("Offset.", False)],
+    [
+        ("Of walking.", True),
+        ("Walking speed.", False),
+        ("As the floor.", True),
+        ("Offset.", False),
+        ("How people walk.", True),
+        ("When the walk begins, s.", True),
+        ("Say which keys are unused.", True),
+        ("Whether the walk has begun.", False),
+    ],
 )
 def test_a_fragment_is_told_from_a_sentence(text: str, is_fragment: bool) -> None:
     assert bool(FRAGMENT.match(text)) == is_fragment

@@ -2,7 +2,7 @@
 
 subframes     the header of a capture, from a file (ti_header, config_header) or by hand
 findings      estimates from the samples: offset binary, sign of the beat, clipping, losses
-content       what the samples of a recording are: beat signals, range profiles or slow time
+content       content of the samples of a recording: beat signals, range profiles or slow time
 recording     the recording file itself: docs/guide/measured.md
 importing     converts a capture of any format into a recording
 chain         the maps of a recording; tracking: the torso's track; maps_file: maps.h5

@@ -46,7 +46,6 @@ def frames_of_recording(
     """Make the products of a board's frames in a recording.
 
     Args:
-        recording: recording of the board.
         config: config with the radar of the frames; that of a data set of recordings has no cloud.
         names: products of a cube, such as range_doppler or cloud.
         start: begin of the part of the recording that is used, s; None is the start.
@@ -127,7 +126,7 @@ def _board(recording: Recording, config: AnyConfig) -> Board:
 
 
 def _describe_difference(recording: Recording, board: Board) -> str | None:
-    """Say in what the content of a recording differs from that of a board; None if it does not."""
+    """Describe the difference of a recording's content from that of a board; None without one."""
     content = recording.info.content
     if board.samples == 1:
         return describe_difference(content, SlowTime(board.carrier_hz, board.prf_hz))

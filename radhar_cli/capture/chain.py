@@ -50,7 +50,7 @@ class Maps:
     board: Board | None = None
 
     def add_products_of_frames(self, products: Mapping[str, Any]) -> None:
-        """Add what a board's frames gave: maps over time to the maps, all else to the frames."""
+        """Add the products of a board's frames: maps over time to maps, all else to frames."""
         for name, product in products.items():
             if isinstance(product, PowerMap):
                 self.maps[name] = product
@@ -95,7 +95,6 @@ def part_of(
     """Find the pulses of a recording from start to stop.
 
     Args:
-        recording: the recording.
         start: time since the first pulse, s; None is the start.
         stop: time since the first pulse, s; None is the end.
         receiver: number of the only receiver; None for all.
@@ -141,7 +140,6 @@ def maps_of(
     """Make maps of a recording.
 
     Args:
-        recording: the recording.
         config: config whose `processing` and `image` are used.
         names: maps to make.
         start: begin of the part of the recording that is used, s; None is the start.
@@ -326,7 +324,6 @@ def bins_of_part(part: RecordingPart, content: Ranging, w: Waveform) -> Complex:
 
     Args:
         part: part of a recording, of which not all pulses are lost.
-        content: content of the recording.
         w: waveform, which says how long the transform over a chirp is.
 
     Raises:
@@ -352,7 +349,7 @@ def _windows(
 ) -> tuple[Signal, tuple[Frames, ...]]:
     """Choose the stretches that hold a window, and the windows of STFT and FSST.
 
-    What is shortened or left out is added to `notes`.
+    Shortened windows and omitted stretches are added to `notes`.
     """
     windows = _windows_of_config(signal, config)
     lengths = signal.times.lengths - canceller.lost

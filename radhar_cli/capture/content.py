@@ -1,4 +1,4 @@
-"""What the samples of a recording are: beat signals of chirps, range profiles, or slow time."""
+"""Content of a recording's samples: beat signals of chirps, range profiles, or slow time."""
 
 from dataclasses import asdict, dataclass, replace
 from typing import Any, ClassVar, Self, TypeAlias
@@ -150,12 +150,11 @@ def numbers_of(content: Content) -> dict[str, Any]:
 def describe_difference(
     content: Content, expected: Content, tolerance: float = TOLERANCE
 ) -> str | None:
-    """Say in what a content differs from another of the same radar, or return None.
+    """Describe the first difference of a content from another of the same radar; None without one.
 
     The text is such as "prf_hz = 200: should be 256".
 
     Args:
-        content: content of a recording.
         expected: content that it should have.
         tolerance: relative difference of numbers that are taken for the same.
     """
@@ -173,10 +172,9 @@ def describe_difference(
 def describe_other_chirps(
     content: Content, expected: Content, tolerance: float = TOLERANCE
 ) -> str | None:
-    """Say in what a content differs from another, in whichever half of the band echoes lie.
+    """Describe a difference of contents, in whichever half of the band echoes lie; or return None.
 
     Args:
-        content: content of a recording.
         expected: content that it should have.
         tolerance: relative difference of numbers that are taken for the same.
     """
@@ -210,7 +208,6 @@ def _radar_keys(content: Content, waveform: str) -> dict[str, Any]:
     """Keys of `radar:` that a recording determines, with their values.
 
     Args:
-        content: content of the recording.
         waveform: `waveform:` of the config, which samples of chirps leave as it is, fmcw or sfcw.
     """
     numbers = {"carrier_hz": content.carrier_hz, "prf_hz": content.prf_hz}

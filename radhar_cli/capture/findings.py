@@ -29,7 +29,7 @@ def probe(source: Source) -> list[Parts]:
 
 
 class Coding(NamedTuple):
-    """How whole numbers encode signed samples."""
+    """Encoding of signed samples as whole numbers."""
 
     words: bool  # whether they are words of 16 bits, read as signed or unsigned
     offset: int = 0  # of offset binary; 0 of two's complement
@@ -163,7 +163,7 @@ class Damage:
         self.flags.append(flags)
 
     def findings(self) -> list[str]:
-        """Describe in words what was counted, a line each."""
+        """Describe the counts in words, a line each."""
         flags, words = np.concatenate(self.flags), []
         if lost := int(np.count_nonzero(flags & LOST)):
             words.append(

@@ -88,7 +88,6 @@ def radar_of_recording(recording: Recording, overrides: Sequence[str] = ()) -> d
     """Section `radar` of a config that has the radar of a recording.
 
     Args:
-        recording: the recording.
         overrides: KEY=VALUE of a config; those of `radar` say what the recording does not.
 
     Raises:
@@ -119,7 +118,7 @@ def radar_of_recording(recording: Recording, overrides: Sequence[str] = ()) -> d
 
 
 def differing_key(section: Any, other: Any, key: str = "radar") -> str | None:
-    """Say which key of a section differs from that of another by more than TOLERANCE, or None."""
+    """Describe the first key that differs from another section by more than TOLERANCE, or None."""
     if isinstance(section, dict) and isinstance(other, dict):
         keys = [*dict.fromkeys([*section, *other])]
         pairs = [(section.get(name), other.get(name), f"{key}.{name}") for name in keys]
@@ -184,7 +183,7 @@ def _tone(
 
 
 def _has_frames(note: Mapping[str, Any]) -> bool:
-    """Whether what is known of a radar says how many chirps a frame has."""
+    """Whether the known keys of a radar give the number of chirps of a frame."""
     return "chirps" in (note.get("frame") or {})
 
 
@@ -199,10 +198,9 @@ def chirps_of_frames(recording: Recording) -> int:
 
 
 def describe_chosen_frames(recording: Recording, section: Mapping[str, Any]) -> str | None:
-    """Say which frames were chosen for a recording that tells none, and why; None if none were.
+    """Describe the frames chosen for a recording that has none, with the reason; None if none were.
 
     Args:
-        recording: the recording.
         section: section `radar` of a config, by `radar_of_recording`.
     """
     content, chirps = recording.info.content, (section.get("frame") or {}).get("chirps")
@@ -244,7 +242,7 @@ def _frame_keys(
 
 
 def _why_frames(recording: Recording, content: Beat, turns: int) -> str | None:
-    """Say why a plain radar of chirps is not that of a recording; None if it is."""
+    """Return why a plain radar of chirps does not fit a recording; None if it fits."""
     receivers = recording.info.receivers
     if turns > 1:
         return f"has {turns} transmitters that take turns"
@@ -368,7 +366,7 @@ def read_radar(section: Mapping[str, Any], where: str = "radar") -> AnyRadar:
 
 
 def has_beam(radar: AnyRadar) -> bool:
-    """Whether the antennas of a radar take a part of what comes from beside their boresight."""
+    """Whether the antennas of a radar weaken echoes from beside their boresight."""
     return isinstance(radar, ArrayRadar) or getattr(radar, "beam", None) is not None
 
 

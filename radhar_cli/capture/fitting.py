@@ -297,7 +297,7 @@ def _first_receivers(recording: Recording) -> list[int]:
 
 @dataclass(frozen=True)
 class DopplerCells:
-    """Cells of range-Doppler maps of a recording, and what they make of noise and of an echo."""
+    """Cells of range-Doppler maps of a recording, with their gains of noise and of an echo."""
 
     f0: float  # frequency at which Doppler is read, Hz
     prf: float  # pulses per second, Hz
@@ -312,7 +312,6 @@ class DopplerCells:
         """Cells of a recording of a content.
 
         Args:
-            content: content of the recording.
             is_iq: whether samples are complex.
         """
         if isinstance(content, SlowTime):

@@ -1,7 +1,7 @@
 """Existing images as samples: a tree of class folders, a table of files, an .npz, or Parquet.
 
 A table (CSV with commas, semicolons or tabs, or a YAML list) has a row for each image file, with
-its label and optionally who it is. An .npz has one array of images [N, H, W] (uint8 or bool; masks
+its label and optionally its person. An .npz has one array of images [N, H, W] (uint8 or bool; masks
 of 0 and 1 become 0 and 255), `label` [N], indices into `classes` or texts, and optionally `person`
 [N]; or x_train, y_train, x_test and y_test, as Keras has them. Files of Parquet are called after
 the part of the split. Columns and arrays may have any of the names in use for them.
@@ -104,18 +104,18 @@ def _list_archives(folder: Path, paths: Sequence[Path], packed: bool) -> ImageLi
             refuse_outside(path, folder)
         with parser_errors_as_capture_errors(str(path)):
             regular_size(path)
-        held, name = _load_archive(path, packed), path.relative_to(folder).as_posix()
+        archive, name = _load_archive(path, packed), path.relative_to(folder).as_posix()
         with path.open("rb") as file:
             checksums[name] = hashlib.file_digest(file, "sha256").hexdigest()
-        sizes.add((held.images.shape[1], held.images.shape[2]))
+        sizes.add((archive.images.shape[1], archive.images.shape[2]))
         parts += [
             {
                 "file": f"{name}/{number}",
-                "label": str(held.label[number]),
-                "person": None if held.person is None else str(held.person[number]),
-                **({} if held.split is None else {"split": str(held.split[number])}),
+                "label": str(archive.label[number]),
+                "person": None if archive.person is None else str(archive.person[number]),
+                **({} if archive.split is None else {"split": str(archive.split[number])}),
             }
-            for number in range(len(held.images))
+            for number in range(len(archive.images))
         ]
     if len(sizes) > 1:
         raise CaptureError(f"{folder}: images have several sizes; should have one")
@@ -144,7 +144,7 @@ def _list_tree(path: Path) -> ImageListing:
 
 
 def _read_rows(path: Path) -> list[dict[str, Any]]:
-    """Rows of a table, {name of its column: cell}; none of what is no table.
+    """Rows of a table, {name of its column: cell}; none where the file is no table.
 
     Names of columns are in lower case, with underscores for spaces and hyphens.
     """
@@ -172,7 +172,7 @@ def _name_of(names: Collection[str], known: Sequence[str]) -> str | None:
 
 
 def _image_file(folder: Path, cell: str) -> str | None:
-    """File of a cell from a folder on, whose ending may be left out; None of what is no image."""
+    """File of a cell from a folder on, whose ending may be left out; None where it is no image."""
     file = cell.strip().replace("\\", "/")
     if PurePosixPath(file).suffix.lower() in SUFFIXES:
         return file
@@ -237,13 +237,13 @@ def _load_archive(path: Path, packed: bool) -> ImageArchive:
 def _load_parquet(path: Path, packed: bool, changed: int) -> ImageArchive:
     """Read the images of Parquet, whose part of the split its name begins with."""
     del packed, changed
-    held = read_parquet_images(path, (*IMAGES, *FILES), LABELS, PERSONS)
+    stored = read_parquet_images(path, (*IMAGES, *FILES), LABELS, PERSONS)
     split = SPLIT_WORDS.get(re.split(r"[-_.]", path.name.lower())[0])
     return ImageArchive(
-        held.levels,
-        np.array(held.labels, object),
-        None if held.persons is None else np.array(held.persons, object),
-        None if split is None else np.repeat(split, len(held.labels)),
+        stored.levels,
+        np.array(stored.labels, object),
+        None if stored.persons is None else np.array(stored.persons, object),
+        None if split is None else np.repeat(split, len(stored.labels)),
     )
 
 
@@ -370,7 +370,7 @@ def _as_numbers(label: NDArray[Any]) -> NDArray[Any]:
 
 
 def _describe_numbers(path: Path, name: str, label: NDArray[Any]) -> str:
-    """Say what numbers without names of classes need, with a command that adds them."""
+    """Describe labels that should be indices into classes, with a command that adds the names."""
     return (
         f"{name} has the numbers {label.min()} to {label.max()}; should be indices into classes, "
         f"or texts; `python -c \"import numpy as np; np.savez('named.npz', **np.load('{path}'), "
@@ -379,7 +379,7 @@ def _describe_numbers(path: Path, name: str, label: NDArray[Any]) -> str:
 
 
 def _describe_one_hot(path: Path, name: str, label: NDArray[Any], has_classes: bool) -> str:
-    """Say what one-hot labels [N, K] should be, with a command that makes them so."""
+    """Describe one-hot labels [N, K] that should be indices, with a command that makes them so."""
     classes = "" if has_classes else f", {_example_classes(label.shape[1])}"
     return (
         f'{name} is one-hot; should be np.argmax({name}, 1); `python -c "import numpy as np; a = '

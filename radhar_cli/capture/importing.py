@@ -132,7 +132,7 @@ def require_header(
 
 
 def _open_capture(files: CaptureFiles) -> tuple[Source, CaptureSettings]:
-    """Open a capture of any format; return it, and the settings with what it says itself."""
+    """Open a capture of any format; return it, and the settings, filled in by its own."""
     settings = files.settings
     try:
         source = open_capture(files)
@@ -335,7 +335,7 @@ def _info(
 
 
 def _radar_note(s: CaptureSettings, content: Content) -> dict[str, Any]:
-    """What the header says of the radar, by keys of a config; frames even where they are joined."""
+    """Return the header's keys of the radar, as in a config; frames even where they are joined."""
     note = dict(s.radar or {})
     if (
         not isinstance(content, RangeProfiles)
@@ -414,7 +414,7 @@ def _as_word(value: object) -> str:
 
 
 def _with_missing_keys(error: MissingKeysError, files: CaptureFiles) -> str:
-    """Message of keys that opening needs, with what is missing besides, and a command."""
+    """Message of keys that opening needs, with others that are missing, and a command."""
     s = files.settings
     examples = error.examples
     has_samples = "samples" in examples or "sample" in examples.get("axes", "")

@@ -39,7 +39,7 @@ RATIOS = ("people", "3d tracking", "vital")  # words of demos whose SNR is a rat
 
 
 class PointSettings(Section):
-    """What a dump of points does not say itself; None is unknown."""
+    """Facts that a dump of points does not state; None is unknown."""
 
     frame_s: Annotated[Above, Field(ge=1e-5, le=1e6)] | None = None  # from frame to frame
     doppler_step_mps: Above | None = None  # of a bin of Doppler, of SDK 1 and 2
@@ -123,7 +123,7 @@ def import_points(
     Args:
         paths: its files, in order.
         out: recording to write.
-        header: what is known of the board.
+        header: facts of the board.
         overwrite: replace an existing recording.
 
     Raises:
@@ -189,7 +189,7 @@ def _draft_of(
     demo: str,
     findings: Callable[[], Sequence[str]],
 ) -> PointRecordingDraft:
-    """What is known of a recording before its frames are read."""
+    """Make the draft of a recording, before its frames are read."""
     s = header.settings
     source = SourceNote(format="points", files=[path.name for path in paths[:1000]])
     labels = [] if s.label is None else [Label(label=s.label, person=s.person)]
@@ -255,14 +255,14 @@ def _missing_text(paths: Sequence[Path], missing: dict[str, str]) -> str:
 
 @dataclass
 class DumpFrames:
-    """Frames of a dump, one after the other, and what was left out of them.
+    """Frames of a dump, one after the other, and counts of the packets left out.
 
     Attributes:
         dump: Packets.
         reader: Reads points and targets of a packet.
         subframe: Number of the subframe whose points are read.
         misfits: Number of packets whose messages do not fit.
-        first_misfit: What did not fit in the first of them.
+        first_misfit: Misfit in the first of them.
         others: Number of packets of other subframes.
     """
 
@@ -306,7 +306,7 @@ class DumpFrames:
         return frame._replace(track=tracks_of(tracks))
 
     def findings(self) -> list[str]:
-        """Say what was left out, in words."""
+        """List the damage, misfits and other subframes that were left out, a sentence for each."""
         sentences = self.dump.damage.findings()
         if self.misfits:
             sentences.append(

@@ -1,4 +1,4 @@
-"""maps.h5 and maps.png of a recording: what `radhar process` writes."""
+"""Files that `radhar process` writes of a recording: maps.h5 and maps.png."""
 
 import json
 from pathlib import Path
@@ -33,7 +33,6 @@ def write_maps(maps: Maps, config: Config, info: RecordingInfo, folder: Path) ->
     """Write maps.h5 into a folder; return its path, in a list.
 
     Args:
-        maps: maps of the recording.
         config: config by which they were made.
         info: description of the recording.
         folder: output folder.

@@ -1,4 +1,4 @@
-"""The file of a recording of points: what a board sent, frame by frame (docs/guide/points.md)."""
+"""The file of a recording of points of a board, frame by frame (docs/guide/points.md)."""
 
 import json
 from collections.abc import Callable, Iterable, Sequence
@@ -56,7 +56,7 @@ class FrameClock:
         frame_s: Time from frame to frame, s.
         numbers: Numbers as the board counts.
         places: Numbers counted on where the board began again, from 0.
-        restarts: How often it did.
+        restarts: Number of times that it began again.
         repeated: Number of frames that came twice, of which the first stays.
     """
 
@@ -85,7 +85,7 @@ class FrameClock:
         return self.places[-1] + 1 - len(self.places) if self.places else 0
 
     def findings(self) -> list[str]:
-        """Say what is odd with the numbers, in words."""
+        """List the lost, repeated and restarted frame numbers, a sentence for each."""
         sentences = []
         if self.lost:
             total = self.places[-1] + 1
@@ -108,7 +108,7 @@ def write_point_recording(
     Args:
         path: file to write.
         frames: its frames, which are read one after the other.
-        draft: what is known of it beside its frames.
+        draft: facts of it beside its frames.
         exclusive: leave a file alone that another process made meanwhile.
 
     Returns:
@@ -144,16 +144,16 @@ def write_point_recording(
 
 @dataclass(frozen=True)
 class PointRecordingDraft:
-    """What is known of a recording beside its frames.
+    """Facts of a recording that do not come from its frames.
 
     Attributes:
         frame_s: Time from frame to frame, s.
         nothing: Message where there is no frame.
-        demo: What sent it, in words.
+        demo: Firmware that sent it, in words.
         cfg: Lines of the board's .cfg; "" where it is unknown.
-        labels: What was recorded.
+        labels: Labels of the recording.
         source: Format and files.
-        findings: Says what else was found, once all frames are read.
+        findings: Lists further findings, once all frames are read.
     """
 
     frame_s: float

@@ -1,6 +1,6 @@
 """A download of a published set becomes recordings and their manifest, by a recipe.
 
-Recordings appear whole and stay, so that what was killed goes on; one that is older than its files
+Recordings appear whole and stay, so that a killed run goes on; one that is older than its files
 is made again. All else is the way of any data set of recordings (`windows.py`).
 """
 
@@ -107,7 +107,6 @@ def prepare_recordings(
     """Make the recordings of a download that are missing, and their manifest.
 
     Args:
-        preparation: What is prepared.
         out: Folder of the data set.
         jobs: Number of processes.
         progress: Is told of every recording.
@@ -198,7 +197,7 @@ def _reserve(preparation: Preparation, out: Path, overwrite: bool) -> None:
 
 
 def _describe_origin(stored: Any) -> str:
-    """Say which download recordings were made of."""
+    """Describe the download that recordings were made of: its recipe, folder and settings."""
     if not isinstance(stored, dict):
         return "another download"
     return f"{stored.get('recipe')}, {stored.get('folder')}, {stored.get('settings')}"

@@ -303,7 +303,7 @@ class Recording(Closing):
         samples: numbers [receiver, sample, pulse], of slow time [receiver, pulse].
         segments: times of the pulses.
         flags: uint8 [pulse]: 1 samples lost, 2 clipped.
-        radar: what the header said of the radar, by keys of a config's section `radar`, unchecked.
+        radar: the header's keys of the radar, as in a config's section `radar`, unchecked.
 
     Raises:
         FolderError: the file is no recording, or is damaged.

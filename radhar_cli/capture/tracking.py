@@ -1,4 +1,4 @@
-"""Where the torso is, found in range-Doppler maps of a recording.
+"""Track of the torso, from range-Doppler maps of a recording.
 
 The strongest peaks of each frame's power over range and Doppler are candidates. Dynamic programming
 (Viterbi) chooses the ridge: strong candidates, each within reach of the one before by its range and

@@ -19,7 +19,7 @@ def has_usual_config(recording: Path) -> bool:
 
 
 def usual_config(recording: Path, overrides: Sequence[str]) -> Config:
-    """Config of Doppler over time without what stands still.
+    """Config of Doppler over time without static echoes.
 
     Args:
         recording: recording of slow time.

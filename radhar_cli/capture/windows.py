@@ -213,7 +213,6 @@ def _section_of_samples(
 
     Args:
         radar: section of the config, plain values.
-        content: content of the recordings.
         noted: section by what the recordings say, which takes its place; None for the config's.
     """
     return radar_section(radar, content) if noted is None else noted

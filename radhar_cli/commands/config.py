@@ -145,7 +145,7 @@ def list_configs() -> None:
 
 
 def _describe_written(name: str) -> str:
-    """Say what a radar is whose numbers stand in its config, and what it resolves."""
+    """Describe a radar whose numbers stand in its config, with its resolutions."""
     from radhar_cli.config import load_config
     from radhar_cli.config.documents import PRESETS
     from radhar_cli.config.starting_file import describe_written

@@ -124,7 +124,7 @@ def generate(
 
 @dataclass(frozen=True)
 class Work:
-    """How data sets are built, and by whom.
+    """Workers, batches and source of rows of a build of data sets.
 
     Attributes:
         jobs: number of worker processes; None for as many as pay.
@@ -156,7 +156,7 @@ class Work:
             yield workers
 
     def build(self, config: "AnyConfig", out: Path, is_last: bool) -> None:
-        """Build a data set, or resume it, and print what was made.
+        """Build a data set, or resume it, and print a summary.
 
         Args:
             config: that of the data set.
@@ -175,12 +175,11 @@ class Work:
     def build_part(
         self, config: "AnyConfig", out: Path, part: "DataSetPart", merged: Path, is_last: bool
     ) -> None:
-        """Make a part of a data set, or resume it, and print what was made.
+        """Make a part of a data set, or resume it, and print a summary.
 
         Args:
             config: that of the data set.
             out: its folder.
-            part: the part.
             merged: folder that `radhar merge` takes: that one, or the one of several radars.
             is_last: whether nothing is left to do after it.
         """

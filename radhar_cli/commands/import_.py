@@ -94,7 +94,7 @@ def _refuse_without_out(
     options: Sequence[str],
     is_of_points: bool,
 ) -> None:
-    """Refuse an import without -o, and name what else is missing, with a command line.
+    """Refuse an import without -o, and name the other missing options, with a command line.
 
     Args:
         captures: files of the capture.
@@ -180,7 +180,7 @@ def _built_in_header(name: str) -> Path:
 def _import_samples(
     captures: Sequence[Path], out: Path, radar: Path | None, values: Sequence[str], overwrite: bool
 ) -> None:
-    """Import a capture of samples, a recording a subframe, and say what was found."""
+    """Import a capture of samples, a recording a subframe, and print the findings."""
     from radhar_cli.capture.importing import import_subframes
     from radhar_cli.capture.subframes import read_subframes, recording_of_subframe
 
@@ -203,7 +203,7 @@ def _import_samples(
 
 
 def _tell_recording(info: "RecordingInfo") -> dict[str, object]:
-    """Say what was found in the samples of a recording; return it by key."""
+    """Print the findings in the samples of a recording; return them by key."""
     from radhar_cli.capture.content import SlowTime
 
     for line in info.source.findings:
@@ -224,7 +224,7 @@ def _tell_recording(info: "RecordingInfo") -> dict[str, object]:
 def _import_points(
     captures: Sequence[Path], out: Path, radar: Path | None, values: Sequence[str], overwrite: bool
 ) -> None:
-    """Import a dump of points, or replay files, and say what was found."""
+    """Import a dump of points, or replay files, and print the findings."""
     from radhar_cli.capture.importing_points import import_points, read_point_header
 
     info = import_points(captures, out, read_point_header(radar, values), overwrite)

@@ -101,7 +101,7 @@ def resumable(work: str) -> Iterator[None]:
     """Context of work that Ctrl-C (status 130) or SIGTERM (status 143) may end.
 
     Args:
-        work: what is kept then, for the message.
+        work: work that is kept then, for the message.
 
     Raises:
         typer.Exit: the work was ended so, with that status.
@@ -143,11 +143,11 @@ def refuse_to_replace_results(out: Path, names: Iterable[str], replace: bool) ->
     Raises:
         FolderError: there are some, and they are not to be replaced.
     """
-    held = [name for name in names if (out / name).exists()]
-    if held and not replace:
+    results = [name for name in names if (out / name).exists()]
+    if results and not replace:
         raise FolderError(
-            f"{out}: holds {', '.join(held[:3])}{', ...' if len(held) > 3 else ''} of an earlier "
-            "run; --overwrite replaces them, another folder keeps them"
+            f"{out}: holds {', '.join(results[:3])}{', ...' if len(results) > 3 else ''} of an "
+            "earlier run; --overwrite replaces them, another folder keeps them"
         )
 
 

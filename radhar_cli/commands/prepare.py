@@ -88,7 +88,7 @@ def prepare(
 
 
 def _list_recipes() -> None:
-    """Print what there is of each recipe."""
+    """Print source, content and tests of each recipe, and the sets that are refused."""
     from radhar_cli.capture.recipes.registry import REFUSED, every_recipe
 
     recipes = every_recipe()

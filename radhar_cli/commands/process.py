@@ -159,7 +159,7 @@ def _title(recording: Path, info: "RecordingInfo") -> str:
 
 
 def _describe_doubt(track: "TorsoTrack") -> str:
-    """Say where the track of the torso may be lost: in its last frames, or here and there."""
+    """Describe where the track of the torso may be lost: in its last frames, or here and there."""
     unsure = (~track.is_sure).nonzero()[0]
     from_last_sure = track.is_sure.nonzero()[0].max(initial=-1) + 1
     lost = f"is unsure in {unsure.size} of {track.time.size} frames"
@@ -172,7 +172,7 @@ def _describe_doubt(track: "TorsoTrack") -> str:
 
 
 def _describe_track(track: "TorsoTrack") -> str:
-    """Say where the torso was found, how fast it was, and how sure that is.
+    """Describe the range and the speed of the torso's track, with its confidence.
 
     What never moves need be no person, and is not called one.
     """

@@ -1,4 +1,4 @@
-"""The folder of one scene: what may be written there, its files, and what is said of them."""
+"""The folder of one scene: its files, checks before they are written, and their summary."""
 
 from dataclasses import dataclass
 from pathlib import Path
@@ -47,7 +47,7 @@ def require_scene_folder(out: Path, overwrite: bool) -> None:
 
 
 def write_scene_folder(simulation: "Simulation", out: Path, outputs: SceneOutputs) -> list[Path]:
-    """Write the files of a scene: its data, and what else is to be there.
+    """Write the files of a scene: its data, and the figures that are asked for.
 
     Args:
         simulation: the scene.
@@ -121,7 +121,7 @@ def _draw_figures(simulation: "Simulation", out: Path, overlay: bool) -> list[Pa
 
 
 def print_summary(simulation: "Simulation", files: list[Path]) -> None:
-    """Print what was simulated, and where the files lie."""
+    """Print a summary of the scene, and its folder."""
     from radhar_cli.scene.single.scene_file import describe
 
     activity = simulation.activity

@@ -41,7 +41,7 @@ class BarProgress(Closing):
             name: the stage, shown before the bar.
             total: number of units of the stage.
             done: number of them that are finished already.
-            unit: what is counted, in the singular.
+            unit: name of the items, in the singular.
         """
         self.close()
         unit = unit or self._unit
@@ -105,7 +105,7 @@ def _class_counts(rows: "Rows") -> dict[str, int]:
 
 
 def print_outcome(config: "AnyConfig", outcome: "BuildOutcome") -> None:
-    """Print what a build has written, and where."""
+    """Print the size, samples and splits of the data set that a build has written."""
     from radhar_cli.config.data_set import Config
     from radhar_cli.dataset.layout import DATASET, SPLITS, Rows
     from radhar_cli.dataset.split import split_rows
@@ -138,7 +138,7 @@ def print_outcome(config: "AnyConfig", outcome: "BuildOutcome") -> None:
 
 
 def print_part(outcome: "BuildOutcome", out: Path, part: str) -> None:
-    """Print what a part of a data set holds, and how to merge it.
+    """Print the content of a part of a data set, and the command that merges it.
 
     Args:
         outcome: that of the build of the part.
@@ -206,7 +206,7 @@ def _tell_stages(products: Mapping[str, str], shares: Mapping[str, float]) -> No
     """Print the stages of a build, and the share of its processor time that each takes.
 
     Args:
-        products: what each product of a sample is, by name.
+        products: description of each product of a sample, by name.
         shares: share of each stage, %; empty where no sample was timed.
     """
     from radhar_cli.dataset.estimate import STAGES

@@ -89,8 +89,7 @@ def _measure(files: "TradeoffFiles", sweep: "Sweep", seconds: float, seeds: int 
     """Measure what is not measured yet; what there is when it is stopped is written.
 
     Args:
-        files: report of the sweep.
-        sweep: what is measured already, and grows.
+        sweep: measurements so far; grows.
         seconds: time for all of it, s.
         seeds: seeds of networks; None for no networks.
     """

@@ -49,7 +49,7 @@ def verify(
 
 
 def _refuse_unfinished(folders: list[Path]) -> None:
-    """Refuse several radars of which some data set is not made yet; say of each what makes it.
+    """Refuse several radars of which some data set is not made yet; name the command for each.
 
     Raises:
         FolderError: there are such radars, a line for each.
@@ -64,7 +64,7 @@ def _refuse_unfinished(folders: list[Path]) -> None:
 
 
 def _tell_of_other_scenes(folders: list[Path]) -> list[str]:
-    """Say whether the data sets of several radars are of the same scenes; return what differs."""
+    """Print whether the data sets of several radars are of the same scenes; return what differs."""
     from radhar_cli.dataset.reading import open_dataset
     from radhar_cli.dataset.same_scenes import differing_columns
 
@@ -81,7 +81,7 @@ def _tell_of_other_scenes(folders: list[Path]) -> list[str]:
 
 
 def _is_sound(out: Path, samples: int, motion: Path | None) -> bool:
-    """Verify the data set in a folder, say what is wrong, and return whether nothing is."""
+    """Verify the data set in a folder, print its faults, and return whether it has none."""
     from radhar_cli.commands.terminal import BarProgress
     from radhar_cli.dataset.verify import verify as verify_folder
 
@@ -112,7 +112,7 @@ def _is_sound(out: Path, samples: int, motion: Path | None) -> bool:
 
 
 def _leak_in_words(out: Path) -> str:
-    """Say what tells the classes besides the movement, in a line, and which command says more."""
+    """Describe in a line the clues to the class besides the movement, and the command for more."""
     from radhar_cli.config.class_laws import laws_by_class
     from radhar_cli.config.data_set import Config
     from radhar_cli.dataset.audited import audit_folder, read_audit

@@ -61,7 +61,7 @@ def view(
 
 
 def _tell_of_other_words(samples: list[str], data: "Dataset", rows: list[int]) -> None:
-    """Say which class is taken for each word of --sample that names it otherwise."""
+    """Print the class that each word of --sample stands for, where it is not the class's name."""
     from radhar_cli.dataset.layout import Rows
     from radhar_cli.motion.activities.vocabulary import plain_word
 

@@ -16,7 +16,7 @@ class BuiltInRadar:
     Attributes:
         name: Name by which configs have it.
         device: Board that it is for.
-        header: What its .cfg says.
+        header: Content of its .cfg.
     """
 
     name: str
@@ -35,7 +35,7 @@ class BuiltInRadar:
 
     @property
     def description(self) -> str:
-        """Line that says what it is for."""
+        """Line of its chain, frame rate, ranges and speeds."""
         timing = self.header.timing
         return (
             f"{self.chain}; {self.frames_per_s:.3g} frames a second, "

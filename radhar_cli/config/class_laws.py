@@ -1,10 +1,10 @@
 """Numbers that are drawn otherwise for one class than for another, though they are no movement.
 
 A number belongs to the movement if its key says which movements use it (`People`, `Paper`): speeds,
-rates, sizes, durations. Everything else is where, when, who, and through what: the place, the
-heading, the body, the SNR, walls and rooms, other people. When a movement begins or ends is no part
-of it either, though its keys name movements: those are the keys of `timing` that name an instant.
-A law of these that differs by class tells the class, whatever is drawn.
+rates, sizes, durations. Everything else belongs to the scene: the place, the heading, the body, the
+SNR, walls and rooms, other people. When a movement begins or ends is no part of it either, though
+its keys name movements: those are the keys of `timing` that name an instant. A law of these that
+differs by class tells the class, whatever is drawn.
 """
 
 import re
@@ -40,7 +40,7 @@ def is_of_movement(key: str) -> bool:
 
 
 def laws_by_class(config: Config) -> list[str]:
-    """Say which numbers that are not the movement have laws of their own for some classes."""
+    """Warn of numbers beside the movement that some classes draw by a law of their own."""
     lines = []
     for key, number in _numbers_by_activity(config, ""):
         if is_of_movement(key):

@@ -62,7 +62,7 @@ class FilesConfig(Section, Generic[N]):
     unit_m: Annotated[float, Field(ge=1e-6, le=1e3, strict=True)] | None = None
     """Length unit of the files; null finds it by the body's size."""
     rate_hz: Annotated[float, Field(ge=1, le=1e4, strict=True)] | None = None
-    """Frames per second of the files, instead of what they say."""
+    """Frames per second of the files, instead of their own."""
     section_s: tuple[FileSecond, FileSecond] | None = None
     """Section [from, to] of each file that is used; null is all of it."""
     low_pass_hz: Annotated[float, Field(ge=0.1, le=1e3, strict=True)] | None = 8.0
@@ -71,7 +71,7 @@ class FilesConfig(Section, Generic[N]):
     """Path of the hips: as the file says, or as the foot on the floor tells, where poses are
     relative to the hips (MediaPipe's world landmarks, Human3.6M)."""
     past_end: Literal["rest", "loop"] = "rest"
-    """What people do where a file is shorter than the recording: they come to rest, or go on in a
+    """Motion of people where a file is shorter than the recording: they come to rest, or go on in a
     loop."""
     file: Annotated[int, Field(ge=0, strict=True)] | None = None
     """Number of the one file that is used, from 0; null draws one."""
@@ -146,7 +146,7 @@ class FilesConfig(Section, Generic[N]):
 
 
 def _require_joint_names(joint: str, names: Any) -> None:
-    """Refuse what is neither a name or a number nor a list of them."""
+    """Refuse a value that is neither a name or a number nor a list of them."""
     listed = names if isinstance(names, (list, tuple)) else [names]
     if not 0 < len(listed) <= MAX_MEANS or not all(map(_is_joint_name, listed)):
         raise value_error(

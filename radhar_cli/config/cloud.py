@@ -1,4 +1,4 @@
-"""How points are found in the frames of a board (docs/guide/boards.md)."""
+"""Detection of points in the frames of a board (docs/guide/boards.md)."""
 
 from typing import Annotated, Literal
 
@@ -10,11 +10,11 @@ from radhar_cli.schema.section import Flag, Section
 
 
 class CloudConfig(Section):
-    """How points are found in the frames of a board (docs/guide/boards.md)."""
+    """Detection of points in the frames of a board (docs/guide/boards.md)."""
 
     chain: Chain = "best"
     """Detection chain: best is what the data allow, the others what TI's firmware does with the
-    .cfg, board that which the file is for: the default where it has the commands of one."""
+    .cfg, board the chain of the file's firmware: the default where it has the commands of one."""
     pfa: Annotated[float, Field(gt=0, le=0.1, strict=True), NeedsKey("cloud.chain", "best")] = 1e-5
     """Rate of false alarms of a range-Doppler cell."""
     quantise: Annotated[Flag, NeedsKey("cloud.chain", "board", "sdk1", "sdk3")] = True

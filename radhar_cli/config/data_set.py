@@ -34,7 +34,7 @@ class Config(Request):
         return _require_none(self, self.problems())
 
     def problems(self) -> Iterable[Problem]:
-        """Find what does not go together in this config, once defaults by model are filled in."""
+        """Find the problems of this config, once defaults by model are filled in."""
         return problems(self.filled())
 
     def replace(self, values: Mapping[str, Any] | None = None, **more: Any) -> Self:
@@ -61,7 +61,7 @@ class ConfigOfRecordings(Config):
     """A config before its recordings are opened: sections are not checked against each other."""
 
     def problems(self) -> Iterable[Problem]:
-        """Find what is wrong whatever the recordings are."""
+        """Find the problems that do not depend on the recordings."""
         return problems_of_recordings(self.filled())
 
 
@@ -69,7 +69,7 @@ class ProcessedConfig(Config):
     """A config with radar and length of the recording that it processes, and checked for that."""
 
     def problems(self) -> Iterable[Problem]:
-        """Find what does not go together in radar and processing."""
+        """Find the problems of radar and processing together."""
         return problems_of_processing(self.filled())
 
 

@@ -1,4 +1,4 @@
-"""YAML files as documents: what a file says lies over the file that its `base` names."""
+"""YAML files as documents: the keys of a file lie over the file that its `base` names."""
 
 import json
 import os
@@ -120,7 +120,7 @@ def _rename_keys(section: Any, prefix: str, places: Places) -> None:
 
     Args:
         section: A document, or one of its people; changed in place.
-        prefix: What stands before its keys in `places`.
+        prefix: Beginning of its keys in `places`.
         places: {dotted key: file:line}, changed in place.
     """
     for other, key in OTHER_NAMES.items():
@@ -224,7 +224,7 @@ def advice_on_radars(value: object) -> str:
 
 @lru_cache(maxsize=1)
 def _names_of_radars() -> dict[str, str]:
-    """Names of the built-in radars by their spellings without what does not matter in them."""
+    """Names of the built-in radars by their plain names (`plain_name`)."""
     names = {plain_name(name): name for name in RADARS}
     for name in RADARS:
         device, _, kind = name.partition("_")

@@ -1,4 +1,4 @@
-"""How the echo is computed."""
+"""Config of the engine that computes the echo."""
 
 from typing import Annotated, Literal
 
@@ -31,7 +31,8 @@ class EngineConfig(Section):
     """Largest relative L2 error of the noiseless signal after the canceller, measured in every
     scene. What is looser than the default runs as it."""
     fallback: Annotated[Literal["refuse", "cube"], _DIRECT, NO_IMPULSE] = "refuse"
-    """What to do with a scene in which `direct` misses the tolerance."""
+    """Treatment of a scene in which `direct` misses the tolerance: refuse it, or compute it by the
+    cube."""
     precision: Annotated[Literal["auto", "double"], _DIRECT] = "auto"
     """Arithmetic of the direct engine: single where the tolerance allows it, or float64 always."""
     motion_in_chirp: Flag = False

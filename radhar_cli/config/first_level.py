@@ -1,4 +1,4 @@
-"""All sections together: what a data set is asked for, not yet checked across sections."""
+"""All sections of a data set together, not yet checked across sections."""
 
 from collections.abc import Iterable, Mapping, Sequence
 from contextlib import suppress
@@ -132,7 +132,7 @@ class Request(Section):
         Literal["keep", "redraw", "error"] | None,
         ByModel(human="redraw", paper="keep", file="redraw"),
     ] = None
-    """What happens to a scene in which a body meets the wall or a scatterer leaves the range
+    """Treatment of a scene in which a body meets the wall or a scatterer leaves the range
     half-band. A scene in which one comes within 5 cm of an antenna is drawn again with `redraw`,
     and refused otherwise."""
     processing: ProcessingConfig = defaults_of(ProcessingConfig)
@@ -151,7 +151,7 @@ class Request(Section):
     _other_words: dict[str, str] = {}  # {word of the file: our name of the same meaning}
 
     recordings: RecordingsConfig | None = None
-    """How `radhar generate --recordings` cuts recordings into samples: see
+    """Division of recordings into samples by `radhar generate --recordings`: see
     docs/guide/measured.md."""
 
     @field_validator("activities", mode="before")
@@ -201,7 +201,7 @@ class Request(Section):
         )
 
     def filled(self) -> Self:
-        """This config, in which what is null and has a default by model takes it.
+        """This config, in which null keys take their defaults by model.
 
         So do activities that a number by activity does not name.
         """
@@ -261,7 +261,7 @@ class Request(Section):
         return self.model_copy(update=changed)
 
     def _name_classes(self) -> None:
-        """Call what is done by our names, and enter movements that are classes in `classes`."""
+        """Call activities by our names, and enter movements that are classes in `classes`."""
         words = dict(self._other_words)
         for own_class in self.classes.values():
             if isinstance(own_class, SequenceConfig):
@@ -346,7 +346,7 @@ class Request(Section):
         return self.model_copy(update={**sections, "classes": classes, "stream": stream})
 
     def activities_of(self, number: int) -> tuple[Activity, ...]:
-        """What one of `people` may do.
+        """List the activities that one of `people` may do.
 
         Raises:
             ValueError: there is no such activity.
@@ -368,13 +368,13 @@ class Request(Section):
         return person.model_copy(update=changed)
 
     def _doing_of(self, number: int) -> str | OneOf:
-        """What one of `people` does, by our names where other words were used."""
+        """Return the activity of one of `people`, by our names where other words were used."""
         person = self.people[number - 1]
         names = [self._other_words.get(name, name) for name in person.names]
         return names[0] if isinstance(person.activity, str) else OneOf(choice=tuple(names))
 
     def samples_of(self, activity: Activity) -> int:
-        """How many samples of an activity there are."""
+        """Count the samples of an activity."""
         if self.stream is not None and activity.slug == STREAM:
             return self.stream.count
         samples: int = for_activity(self.samples_per_class, activity)
@@ -512,7 +512,7 @@ class MeasuredRequest(Section):
         return (*of_frames, *OF_POINTS, *joints) if "points" in self.maps else of_frames
 
     def samples_of(self, activity: Activity) -> int:
-        """How many windows of an activity there are."""
+        """Count the windows of an activity."""
         return self.recordings.counts.get(activity.slug, 0)
 
     @cached_property
@@ -561,7 +561,6 @@ def _with_defaults(section: S, values: Mapping[str, Any], inner: str = "") -> S:
     """A section with defaults of other keys' making, which do not count as given.
 
     Args:
-        section: the section.
         values: {key: default}.
         inner: key of the section within it whose keys they are; "" for its own.
     """
@@ -648,7 +647,7 @@ def _pose_of_cfg(radar: Any) -> dict[str, float]:
 
 
 def _fill_for_board(c: Request, radar: ArrayRadar, changed: dict[str, dict[str, Any]]) -> None:
-    """Note the defaults that a board has of its own, of what was not given."""
+    """Note the defaults that a board has of its own, for keys that are not given."""
     try:
         _ = radar.timing
     except CaptureError as error:
@@ -671,7 +670,7 @@ def _fill_for_board(c: Request, radar: ArrayRadar, changed: dict[str, dict[str, 
 
 @cache
 def _uses() -> dict[str, dict[str, frozenset[str]]]:
-    """{dotted key: {model: who uses it}} of the keys that not everybody uses."""
+    """{dotted key: {model: users}} of the keys that not everybody uses."""
     uses = dict[str, dict[str, frozenset[str]]]()
     for key, people in of_kind(Request, People):
         uses.setdefault(key, {})["human"] = frozenset(users_of(key, people))

@@ -1,4 +1,4 @@
-"""What an image of a map shows."""
+"""Config of the images of maps."""
 
 from typing import Annotated, Generic, Literal, TypeAlias
 
@@ -51,7 +51,7 @@ class CfarConfig(Section, Generic[N]):
     """Level at which the map's median is put with `domain: decibel`: the threshold is then a factor
     of decibels."""
     edges: Literal["wrap", "shrink"] = "wrap"
-    """What stands for cells beyond an edge: those of the opposite edge, or none."""
+    """Cells that stand for those beyond an edge: the ones at the opposite edge, or none."""
 
     def make_detector(self: "CfarConfig[Number]") -> CellAveraging:
         """Make the detector; numbers that are still to be drawn are taken at their middle."""
@@ -78,7 +78,7 @@ def _reference_kind(value: object) -> str:
 
 
 def _require_reference(value: object) -> object:
-    """Refuse what is neither a word of a reference nor a mapping."""
+    """Refuse a value that is neither a word of a reference nor a mapping."""
     if value not in ("noise", "peak") and _reference_kind(value) == "<word>":
         raise value_error("should be noise, peak or {dbm: NUMBER}")
     return value
@@ -107,7 +107,7 @@ class ImageConfig(Section):
     ] = (256, 256)
     """Image size [height, width]; one number is a square."""
     kind: Literal["decibel", "cfar", "signed"] = "decibel"
-    """What pixels show: grey levels of decibels; cfar, binary masks of what exceeds its background;
+    """Kind of pixels: grey levels of decibels; cfar, binary masks of what exceeds its background;
     or signed, the samples of an impulse radar's rtm, 0 in the middle."""
     clipped: Annotated[float, Field(ge=0, lt=1, strict=True), NeedsKey("image.kind", "signed")] = (
         0.02
@@ -116,11 +116,11 @@ class ImageConfig(Section):
     dynamic_range_db: Annotated[float, Field(gt=0, le=300, strict=True)] = 50.0
     """Range of the grey levels (`kind: decibel`)."""
     reference: Annotated[ImageReference, NeedsKey("image.kind", "decibel")] = "noise"
-    """What grey levels are relative to: noise, the image's noise floor, which is 0.4
-    dynamic_range_db above level 0, less where the image's peak would exceed level 255; peak, its
-    largest power, level 255; or {dbm: NUMBER}, the power of a cell that is level 255 in all images:
-    the received one in frame maps, in others with the gain of the sums over a window and over
-    range (`largest_db` of output.power has their size)."""
+    """Reference of the grey levels: noise, the image's noise floor, which is 0.4 dynamic_range_db
+    above level 0, less where the image's peak would exceed level 255; peak, its largest power,
+    level 255; or {dbm: NUMBER}, the power of a cell that is level 255 in all images: the received
+    one in frame maps, in others with the gain of the sums over a window and over range
+    (`largest_db` of output.power has their size)."""
     cfar: Annotated[CfarConfig, NeedsKey("image.kind", "cfar")] = defaults_of(CfarConfig)
     colour_map: str = DEFAULT_COLOUR_MAP
     """Colour map of PNGs and figures, any Matplotlib name; dataset.h5 holds grey levels."""

@@ -20,7 +20,7 @@ NOT_OF_STREAMS = Unless("stream", "stream, which is cut anywhere")
 
 
 class PlaceConfig(Section, Generic[B]):
-    """Where people are at one instant of the recording, whatever they do.
+    """Place of people at one instant of the recording, whatever they do.
 
     Walkers are there on the way: their course goes through the place at an instant at which all of
     it stays within what radar, wall and room allow, where there is one.
@@ -39,7 +39,7 @@ class PlaceConfig(Section, Generic[B]):
 
 
 class MotionConfig(Section, Generic[B]):
-    """Where people stand, where they head and how they move, by movement and model of motion.
+    """Places, headings and movements of people, by movement and model of motion.
 
     What another model alone knows is ignored; what is null takes the value of the model.
     """
@@ -79,7 +79,7 @@ class MotionConfig(Section, Generic[B]):
 
 
 class TimingConfig(Section, Generic[B]):
-    """When the phases of an activity begin and how long they last.
+    """Beginnings and durations of the phases of an activity.
 
     What is null takes the value of the model.
     """
@@ -87,8 +87,8 @@ class TimingConfig(Section, Generic[B]):
     onset: Annotated[B, NOT_OF_STREAMS, ByActivity(within(0, 1)), People("", 0, 1)] = default_draw(
         uniform(0.0, 1.0)
     )
-    """When people begin, before or during the recording: 0 is the earliest instant that leaves
-    enough of the movement to be seen, 1 the latest."""
+    """Beginning of the movement, before or during the recording: 0 is the earliest instant that
+    leaves enough of the movement to be seen, 1 the latest."""
     visible: Annotated[B, NOT_OF_STREAMS, ByActivity(within(0, 1)), People("", 0, 1)] = (
         default_draw(0.75)
     )

@@ -118,7 +118,6 @@ def keep_used_files(config: Config, slug: str) -> Config:
     """Reduce a scene's config to the files that it needs: one of each class, by its full path.
 
     Args:
-        config: Config of the scene.
         slug: Class of the scene, whose chosen file is kept; of the others the first.
     """
     classes = {}

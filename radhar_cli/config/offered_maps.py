@@ -23,7 +23,7 @@ def possible_maps(config: Request) -> tuple[str, ...]:
 
 
 def why_no_map(config: AnyRequest, name: str) -> str | None:
-    """Why the radar of a config cannot make a map of that name, or the cube; None if it can."""
+    """Return why the radar of a config cannot make a map or the cube; None if it can."""
     radar = config.radar
     if name in (*ANGLE_TIME_MAPS, *FRAME_MAPS, "cube"):
         why = radar.why_no_frames(name)
@@ -38,7 +38,7 @@ def why_no_map(config: AnyRequest, name: str) -> str | None:
 
 
 def _gating(config: AnyRequest) -> str | None:
-    """What makes Doppler maps those of a gate, in words; None where nothing does."""
+    """Name the key that makes Doppler maps those of a gate; None where none does."""
     processing = config.processing
     if processing.range_sum != "gated":
         return None

@@ -1,4 +1,4 @@
-"""What is written of a sample, and how samples are split."""
+"""Config of the files of a sample, and of the splits."""
 
 from typing import Annotated, Literal
 
@@ -14,7 +14,7 @@ Name = Annotated[str, Field(pattern=r"^[A-Za-z_][A-Za-z0-9_]{0,62}$")]
 
 
 class OutputConfig(Section):
-    """What is written of every sample, and how hard it is compressed: 0 none, 1 fast, 9 small."""
+    """Files and arrays written of every sample, and their compression: 0 none, 1 fast, 9 small."""
 
     png: Flag = True
     """Whether a tree of images is written beside dataset.h5."""

@@ -1,4 +1,4 @@
-"""Dotted keys: what stands under them in a config, and configs in which they are changed."""
+"""Dotted keys: their values in a config, and configs in which they are changed."""
 
 from collections.abc import Callable, Mapping
 from typing import Any, TypeVar, cast

@@ -34,8 +34,7 @@ class SubjectConfig(Section, Generic[N]):
     height_m: Annotated[N, POSITIVE, within(0.1, 10, "m"), Limits(1.0, 2.1), PERSONAL] = (
         default_draw(uniform(1.5, 1.9))
     )
-    """Stature of the person; who is smaller than 1.5 m counts as a child in proportions, weight
-    and gait."""
+    """Stature of the person; below 1.5 m it is a child's in proportions, weight and gait."""
     weight_kg: Annotated[Filled[N], POSITIVE, within(1e-3, 1e6, "kg"), PERSONAL] = default_draw(
         None
     )
@@ -70,14 +69,14 @@ _SEGMENTS = NeedsKey("body.scatterers", "segments")
 
 
 class BodyConfig(Section):
-    """What of a person scatters: the joints as points, or the segments between them.
+    """Scatterers of a person: the joints as points, or the segments between them.
 
     `segments` are ellipsoids of `points_per_segment` points at most; how many a recording needs
     follows from its speeds, window and wavelength (docs/physics/bodies.md).
     """
 
     scatterers: Literal["points", "segments", "surfaces"] = "points"
-    """What scatters: the 13 joints, ellipsoids between them, or surfaces that face the radar."""
+    """Scatterers: the 13 joints, ellipsoids between them, or surfaces that face the radar."""
     points_per_segment: Annotated[
         int, Field(ge=1, le=1000, strict=True), NeedsKey("body.scatterers", "segments", "surfaces")
     ] = 20

@@ -86,12 +86,12 @@ class ProcessingConfig(Section):
         HighpassConfig
     )
     range_sum: Annotated[Literal["coherent", "gated"], SPECTRA] = "coherent"
-    """What Doppler maps show: the coherent sum of the kept bins, or STFTs of those in the gate,
-    summed incoherently."""
+    """Sum over range of Doppler maps: the coherent sum of the kept bins, or STFTs of those in the
+    gate, summed incoherently."""
     gate_m: Annotated[float | tuple[float, float], _GATED] = 1.0
     """Reach of the gate to both sides of the torso, m, or [from, to]: fixed ranges."""
     gate_sum: Annotated[Literal["power", "magnitude"], _GATED] = "power"
-    """How the gate's bins are added up: their powers, or (sum of the magnitudes)^2."""
+    """Sum of the gate's bins: their powers, or (sum of the magnitudes)^2."""
     range_fft_length: Annotated[
         Annotated[int, Field(ge=2, multiple_of=2, strict=True)] | None, NO_BOARD
     ] = None
@@ -141,7 +141,7 @@ class ProcessingConfig(Section):
 
     @property
     def leaves_static(self) -> bool:
-        """Whether the canceller leaves something of what stands still."""
+        """Whether the canceller leaves something of static echoes."""
         return self.clutter == "none" or (
             self.clutter == "highpass" and not self.highpass.remove_mean
         )

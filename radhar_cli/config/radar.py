@@ -177,11 +177,10 @@ class AnyRadar(Section):
         return ("tx_m", "rx_m")
 
     def why_no_map(self, kind: MapKind, gating: str | None) -> str | None:
-        """Say why the radar does not make a map of a signal; None if it does.
+        """Return why the radar does not make a map of a signal; None if it makes it.
 
         Args:
-            kind: the map.
-            gating: what makes Doppler maps those of a gate, in words; None where they show the
+            gating: key that makes Doppler maps those of a gate, in words; None where they show the
                 coherent sum over range.
         """
         if gating and kind.transform is Transform.FSST:
@@ -191,7 +190,7 @@ class AnyRadar(Section):
         return None
 
     def why_no_frames(self, name: str) -> str | None:
-        """Say why the radar does not make a map of frames, or their cube; None if it does."""
+        """Return why the radar makes no map of frames, nor the cube; None if it does."""
         return (
             f"{name} is of the frames of a board (radar.cfg, docs/guide/boards.md) or of an FMCW "
             "radar with radar.frame, such as 'frame: {chirps: 64}'"
@@ -235,7 +234,7 @@ class _AntennaPair(AnyRadar, Generic[N]):
     """Gain of each antenna at its boresight."""
     antenna_isolation_db: Annotated[N, DECIBEL] = default_draw(10.0)
     """Isolation between transmitter and receiver; raw recordings have the leakage, and maps where
-    `processing.clutter` leaves what stands still."""
+    `processing.clutter` leaves static echoes."""
     beam: BeamConfig[N] | None = None
     """Beam of both antennas; null radiates evenly."""
 
@@ -331,7 +330,7 @@ class ContinuousWave(AnyRadar):
     """Kind of the radar."""
 
     def why_no_map(self, kind: MapKind, gating: str | None) -> str | None:
-        """Say why the radar does not make a map: it has no range."""
+        """Return why the radar, which has no range, makes no map; None if it does."""
         return NO_RANGE if kind.transform is Transform.RTM else super().why_no_map(kind, gating)
 
 
@@ -347,7 +346,7 @@ class CwRadar(ContinuousWave, _Emission[N], _AntennaPair[N], _Pulses[N], Generic
     symmetric."""
 
     def why_no_map(self, kind: MapKind, gating: str | None) -> str | None:
-        """Say why the radar does not make a map: real samples have no direction of motion."""
+        """Return why the radar makes no map (real samples lack the sign); None if it does."""
         if self.output == "real" and kind.treatment.compensated:
             return "radar.output: real has no sign of the Doppler"
         return super().why_no_map(kind, gating)
@@ -397,7 +396,7 @@ class ImpulseRadar(_Emission[N], _AntennaPair[N], _Band[N], Generic[N]):
         )
 
     def why_no_map(self, kind: MapKind, gating: str | None) -> str | None:
-        """Say why the radar does not make a map of its samples; of complex ones it makes all."""
+        """Return why the radar does not make a map of its samples; None if it does."""
         if self.output == "iq":
             return super().why_no_map(kind, gating)
         if kind not in (MapKind.parse("rtm"), MapKind.parse("stft")):
@@ -508,7 +507,7 @@ class ArrayRadar(_Emission[N], Generic[N]):
         )
 
     def why_no_map(self, kind: MapKind, gating: str | None) -> str | None:
-        """Say why the radar does not make a map: its frames may be too short for a window."""
+        """Return why the radar makes no map (a frame may be too short); None if it does."""
         if kind.is_doppler_time and self.timing.loops < MIN_WINDOW:
             return (
                 f"the {self._loops} of a frame ({self.chirps_key}) are fewer than "
@@ -517,7 +516,7 @@ class ArrayRadar(_Emission[N], Generic[N]):
         return super().why_no_map(kind, gating)
 
     def why_no_frames(self, name: str) -> str | None:
-        """Say why the radar does not make a map of its frames; None if it does.
+        """Return why the radar does not make a map of its frames; None if it does.
 
         A board that lacks elements which its .cfg names is refused elsewhere.
         """
@@ -547,11 +546,11 @@ class ArrayRadar(_Emission[N], Generic[N]):
         return self.firmware
 
     def why_no_points(self, chain: Chain) -> str | None:
-        """Say why a chain does not find points with the radar; None if it does."""
+        """Return why a chain does not find points with the radar; None if it does."""
         return self._why_no_azimuths(chain)
 
     def _why_no_azimuths(self, chain: Chain) -> str | None:
-        """Say why the elements of the array do not tell azimuths apart; None if they do.
+        """Return why the array does not tell azimuths apart; None if it does.
 
         Firmware takes the elements of a row for neighbours, but for people tracking, whose .cfg has
         their places. `best` knows them, but takes high sidelobes of a sparse row for targets.
@@ -706,11 +705,11 @@ class BoardRadar(ArrayRadar[N], Generic[N]):
         return _array_of(self.array)
 
     def why_no_points(self, chain: Chain) -> str | None:
-        """Say why a chain does not find points on the board; None if it does."""
+        """Return why a chain does not find points on the board; None if it does."""
         return self._why_no_pair(chain) or super().why_no_points(chain)
 
     def _why_no_pair(self, chain: Chain) -> str | None:
-        """Say why a demo does not take the chirps in which two transmitters send together.
+        """Return why a demo refuses chirps that two transmitters send together, or None.
 
         The out-of-box firmware takes two chirps alone, of TX1 and TX3, on a 1642 of TX1 and TX2.
         """
@@ -890,7 +889,7 @@ class CwFramesRadar(ContinuousWave, FramesRadar[N], Generic[N]):
     @model_validator(mode="before")
     @classmethod
     def _require_rate(cls, value: object) -> object:
-        """Require what says how often samples are taken."""
+        """Require the key that gives the rate of the samples."""
         if isinstance(value, dict) and isinstance(value.get("frame"), dict):
             rates = value.get("prf_hz"), value["frame"].get("interval_s")
             if rates == (None, None):
@@ -901,14 +900,14 @@ class CwFramesRadar(ContinuousWave, FramesRadar[N], Generic[N]):
         return value
 
     def why_no_frames(self, name: str) -> str | None:
-        """Say why the radar does not make a map of its frames: it has no range."""
+        """Return why the radar, which has no range, makes no map of frames; None if it does."""
         kind = FRAME_MAP_KINDS.get(name)
         if name == "points" or (kind is not None and kind.rows is RANGE):
             return NO_RANGE
         return super().why_no_frames(name)
 
     def why_no_points(self, chain: Chain) -> str | None:
-        """Say that there are no points."""
+        """Return why there are no points: the radar has no range."""
         return NO_RANGE
 
 

@@ -1,4 +1,4 @@
-"""Where people can be, by what a config draws: the range axis that images have by default."""
+"""Ranges at which a config places people: the range axis that images have by default."""
 
 from collections.abc import Iterable, Iterator
 from contextlib import suppress
@@ -22,9 +22,8 @@ def range_zone(request: "Request") -> tuple[float, float]:
     """Ranges in which people can be: from 0 to the whole metre beyond the farthest of them.
 
     It follows from what the config may draw, not from what a sample has drawn: an axis that
-    followed a sample would tell where its person is, and so maybe what it does. Who walks goes
-    as far as the usual speed takes them within the recording; those few who are faster leave the
-    image.
+    followed a sample would tell where its person is, and so maybe what it does. Walkers go as
+    far as the usual speed takes them within the recording; the few faster ones leave the image.
     """
     if request.stream is not None:
         zone = request.stream.zone

@@ -1,4 +1,4 @@
-"""Read a YAML config, apply ``--set`` overrides, and say clearly what is wrong with it."""
+"""Read a YAML config, apply ``--set`` overrides, and describe its problems."""
 
 import difflib
 import json
@@ -188,7 +188,7 @@ def load_config(
 
 
 def ask_for_one_radar(names: Iterable[str]) -> str:
-    """Say that several radars are given where one is needed, and how one is chosen."""
+    """Describe the choice of one of several radars, where one is needed."""
     *earlier, last = names
     return (
         f"has several radars, {', '.join(earlier)} and {last}; should be one here: "
@@ -235,7 +235,7 @@ def load_radars(
 
 
 def _source(config: str | Path | Mapping[str, Any]) -> Path | Mapping[str, Any]:
-    """Take what a config is read from: a file, or plain values.
+    """Take the source of a config: a file, or plain values.
 
     Raises:
         ConfigError: it is neither.
@@ -459,9 +459,9 @@ def validated(
         kind: class of the config.
         document: plain values, as a YAML file has them.
         where: file that messages name for keys without a place.
-        places: {dotted key: file:line} of what stands in it, or in a file under it.
-        options: {dotted key: option} of what an option of the command line says instead.
-        written: where the keys of the document stand in a file of several radars; None in others.
+        places: {dotted key: file:line} of its keys, and of those of files under it.
+        options: {dotted key: option} of keys that an option of the command line gives.
+        written: places of the document's keys in a file of several radars; None in others.
 
     Raises:
         ConfigError: the document is no such config; a line for each of MAX_MISTAKES mistakes.
@@ -664,7 +664,7 @@ def _our_word(names: list[int | str], item: Any) -> str | None:
 
 
 def _advice_on_frequency(names: list[int | str], item: Any) -> str:
-    """Say that a frequency below its least one is in Hz, where it may have been in GHz or MHz."""
+    """Return the advice that a frequency below its least one is in Hz, not in GHz or MHz; or ""."""
     key, value = ".".join(str(name) for name in names), item["input"]
     least = item.get("ctx", {}).get("ge")
     if item["type"] != "greater_than_equal" or unit_of(key) != "hz" or not 0 < value < least:
@@ -773,7 +773,7 @@ def _section_of(field: FieldInfo, value: Any) -> type[BaseModel] | None:
 def _section_around(
     kind: type[BaseModel], names: list[int | str], document: Any
 ) -> type[BaseModel] | None:
-    """Section that a key of the document lies in; None below what is no section."""
+    """Section that a key of the document lies in; None below a key that is no section."""
     place: type[BaseModel] | None = kind
     for name in names[:-1]:
         document = document.get(name) if isinstance(document, dict) else None
@@ -802,7 +802,7 @@ def _paths_of_groups(section: type[BaseModel]) -> dict[str, list[str]]:
 
 
 def _why_of_another(kind: type[BaseModel], key: str) -> str | None:
-    """Say which other radars have a key that this kind does not know; None if none has it."""
+    """Describe the radars that have a key which this kind does not know; None if none has it."""
     if not issubclass(kind, AnyRadar):
         return None
     if key == "frame" and not issubclass(kind, ArrayRadar):
@@ -862,7 +862,7 @@ def _value_and_advice(problem: Problem) -> str:
 
 
 def _advice_on_unit(problem: Problem) -> str:
-    """Say what a number beyond its range would be in our unit, where another unit explains it."""
+    """Return the advice which unit would bring a number into its range; "" where none does."""
     reach = re.match(r"should be from (\S+) to (\S+)", problem.right)
     value = problem.value
     if isinstance(value, dict) and len(value) == 1:  # a distribution

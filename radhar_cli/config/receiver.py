@@ -1,4 +1,4 @@
-"""What the receiver adds to the echo."""
+"""Config of the receiver: noise and other impairments of the echo."""
 
 from typing import Annotated, Generic, Literal
 
@@ -65,4 +65,4 @@ class ReceiverConfig(Section, Generic[N]):
             NeedsKey("receiver.channel_phase_deg", ABOVE_ZERO),
         ),
     ] = "data_set"
-    """How often gains and phases of the channels are drawn: once a data set, or once a sample."""
+    """Draws of the channels' gains and phases: one for the data set, or one for each sample."""

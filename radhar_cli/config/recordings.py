@@ -32,13 +32,13 @@ class RecordedPart(Section):
     file: Annotated[str, Field(max_length=500)]
     """Path of the recording, from the manifest's folder on."""
     label: Annotated[str, Field(pattern=f"^{SLUG}$")]
-    """Class of what the person does."""
+    """Class of the person's activity."""
     person: Annotated[str, Field(max_length=100)] | None = None
     """Name or number of the person, where it is known."""
     start_s: Annotated[float, Field(ge=0, le=1e7, strict=True)]
-    """When the part begins."""
+    """Beginning of the part."""
     stop_s: Annotated[float, Field(ge=0, le=1e7, strict=True)]
-    """When the part ends."""
+    """End of the part."""
     split: SplitName | None = None
     """Part of the split, where the manifest says it."""
 
@@ -77,7 +77,7 @@ class RecordingsConfig(Section):
     joints: Flag = False
     """Whether recordings of points have joints beside them, filled in."""
     source: Annotated[str, Field(max_length=500)] | None = None
-    """Where the recordings come from, for the data card."""
+    """Origin of the recordings, for the data card."""
 
     @model_serializer(mode="wrap")
     def _without_defaults(self, serialise: SerializerFunctionWrapHandler) -> dict[str, Any]:
@@ -90,12 +90,12 @@ class RecordingsConfig(Section):
         return self
 
     def count(self, part: RecordedPart) -> int:
-        """How many windows a part holds."""
+        """Count the windows of a part."""
         room = part.stop_s - part.start_s - self.window_s
         return floor(room / self.hop_s + 1e-9) + 1 if room >= -1e-9 else 0
 
     def starts(self, part: RecordedPart) -> list[float]:
-        """When the windows of a part begin, s."""
+        """List the times at which the windows of a part begin, s."""
         return [part.start_s + n * self.hop_s for n in range(self.count(part))]
 
     @cached_property

@@ -147,7 +147,7 @@ class DielectricConfig(Section, Generic[N]):
 
 
 class BoxConfig(Section, Generic[N]):
-    """Where the faces of a room are; the floor is at 0."""
+    """Places of the faces of a room; the floor is at 0."""
 
     x: tuple[N, N] = default_draw((0.0, 6.0))
     """Ranges of the front and the back face, m."""
@@ -181,7 +181,7 @@ class _Face:
 
 
 class FacesConfig(Section, Generic[N]):
-    """What the faces of a room are made of: ITU-R P.2040's name, or {eps_r, loss_tangent}."""
+    """Materials of the faces of a room: ITU-R P.2040's name, or {eps_r, loss_tangent}."""
 
     floor: Annotated[Material | DielectricConfig[N], _Face()] | None = None
     """Material of the floor: concrete, brick, plasterboard, wood, glass, ceiling_board, chipboard,
@@ -211,7 +211,7 @@ class FacesConfig(Section, Generic[N]):
         """Make the faces that reflect.
 
         Args:
-            box: where they are; None for a floor alone.
+            box: box of the faces; None for a floor alone.
             middle_hz: middle of the radar's band, at which permittivities are taken.
             polarisation: vertical or horizontal.
         """
@@ -230,7 +230,7 @@ class FacesConfig(Section, Generic[N]):
 
 
 class RoomConfig(Section, Generic[N]):
-    """What stands in the room, what its faces echo, or a wall behind people."""
+    """Objects in the room, echoes of its faces, or a wall behind people."""
 
     box_m: Annotated[BoxConfig[N] | None, NeedsKey("room.faces", GIVEN)] = None
     """Places of the room's faces."""

@@ -151,7 +151,6 @@ def draw_part(part: AnyPart, first: int, key: str, chance: Chance) -> list[int]:
     """Draw a part.
 
     Args:
-        part: the part.
         first: place of its first movement among all that are written.
         key: its dotted key, which names the choices.
         chance: random choices.
@@ -186,7 +185,6 @@ def states_after(part: AnyPart, states: States, links: bool) -> States:
     """States in which a body may be after a part, whatever is drawn.
 
     Args:
-        part: the part.
         states: states in which it may begin.
         links: whether linking movements are put in where states differ.
 

@@ -41,7 +41,7 @@ class RadarDocument:
     Attributes:
         name: name of the radar in `radars`.
         values: plain values of its config.
-        written: what the file says: {name: entry of `radars`}, `radar` and the rest.
+        written: content of the file: {name: entry of `radars`}, `radar` and the rest.
     """
 
     name: str
@@ -106,7 +106,7 @@ def radar_names(document: Mapping[str, Any]) -> tuple[str, ...]:
 
 
 def problems_of_radars(document: Mapping[str, Any]) -> Iterator[Problem]:
-    """Find what is wrong with the entries of `radars` as such, and with `radar_name`."""
+    """Find the problems of the entries of `radars` as such, and of `radar_name`."""
     radars = document.get(RADARS_KEY)
     if radars is None:
         return
@@ -142,7 +142,7 @@ def problems_of_radars(document: Mapping[str, Any]) -> Iterator[Problem]:
 
 
 def _misplaced_problems(key: str, entry: Mapping[str, Any]) -> Iterator[Problem]:
-    """Find what an entry of `radars` has that is one for all radars, or that holds a radar."""
+    """Find keys of an entry of `radars` that are one for all radars, or that hold a radar."""
     for name, value in entry.items():
         if name in _OF_ALL:
             right = f"is one for all radars; should stand beside {RADARS_KEY}, not in it"
@@ -155,7 +155,7 @@ def _misplaced_problems(key: str, entry: Mapping[str, Any]) -> Iterator[Problem]
 def _aspect_problems(
     key: str, entry: Mapping[str, Any], shared: Mapping[str, Any]
 ) -> Iterator[Problem]:
-    """Find what is wrong with where `aspect` puts a radar."""
+    """Find the problems of the place where `aspect` puts a radar."""
     written, common = entry.get(ASPECT), shared.get(ASPECT)
     for value, where in ((written, f"{key}.{ASPECT}"), (common, f"radar.{ASPECT}")):
         if value is not None and not isinstance(value, dict):
@@ -194,7 +194,7 @@ def _aspect_problems(
 
 
 def _aspect_of(entry: Mapping[str, Any], shared: Mapping[str, Any]) -> Mapping[str, Any] | None:
-    """What an entry says of its aspect over what all radars have; None without, or where null."""
+    """Return an entry's aspect over that of all radars; None without one, or where it is null."""
     if entry.get(ASPECT, shared.get(ASPECT)) is None:
         return None
     return {**_mapping(shared.get(ASPECT)), **_mapping(entry.get(ASPECT))}

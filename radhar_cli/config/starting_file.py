@@ -1,4 +1,4 @@
-"""A config to start from, out of the schema: every key, its default, and what it means."""
+"""A config to start from, out of the schema: every key, its default, and its meaning."""
 
 import inspect
 import json
@@ -117,7 +117,7 @@ def _lines(kind: type[Section], left_out: Collection[str] = ()) -> Iterator[str]
 
 
 def _by_model(about: tuple[Any, ...]) -> str:
-    """Say what null is under each model of motion; "" where no plain default depends on it."""
+    """Describe null by each model of motion; "" where no plain default depends on it."""
     values = next((one.values for one in about if isinstance(one, ByModel)), {})
     plain = {model: as_text(value) for model, value in values.items() if _is_plain(value)}
     if not plain or len(plain) < len(values):
@@ -222,7 +222,7 @@ split: {{train: 0.7, validation: 0.15, test: 0.15}}
 
 
 def _notes_on_points(board: BoardHeader, device: str, chain: Chain) -> Iterator[str]:
-    """Say what people wonder at in the points of a board: that they are few, or all at a height."""
+    """Note why the points of a board are few, or all at one height."""
     if chain in ("sdk1", "sdk3") and any(board.detection.grouping):
         clouds = f"{device.lower()}_clouds"
         others = f" or --radar {clouds}" * (name_of_radar(clouds) is not None)
@@ -247,7 +247,7 @@ def _is_comment(line: str) -> bool:
 
 
 def _describe_chain(chain: Chain, board: BoardHeader) -> str:
-    """Say what the other chains are, for a comment."""
+    """Describe the reason for a chain, and the other chains, for a comment."""
     if chain == "best":
         reasons = board.why_no_chain or ("the file has no detection that is simulated",)
         return f"as the data allow: {reasons[0]}"

@@ -129,7 +129,7 @@ class StreamChance(Chance, Protocol):
 
 @dataclass(frozen=True)
 class _Bout:
-    """What an activity consists of in one bout."""
+    """Movements of an activity in one bout."""
 
     names: tuple[str, ...]
     durations: tuple[Number | None, ...]  # those that its own class says
@@ -152,9 +152,8 @@ def draw_stream(
     """Draw the movements of a stream, with the label of each.
 
     Args:
-        stream: how the activities follow each other.
+        stream: order and pauses of the activities.
         seconds: duration of the recording, s.
-        activities: what people do.
         classes: classes of one's own, whose sequences are drawn for each bout.
         chance: random choices and numbers.
     """
@@ -211,7 +210,7 @@ def linked(
 def links_to_all(state: str | None, names: Sequence[str]) -> tuple[str, ...] | None:
     """Links from a state of rest to where a sequence usually begins; None where there are none.
 
-    Who is in another state in which it may begin needs no link.
+    Another state in which it may begin needs no link.
     """
     firsts = first_states(names)
     if state is None or state in firsts:
@@ -240,7 +239,7 @@ def _draw_activity(
 def _draw_bout(
     activity: Activity, classes: Mapping[str, ClassConfig], key: str, chance: StreamChance
 ) -> _Bout:
-    """Draw what an activity consists of in one bout."""
+    """Draw the movements of an activity in one bout."""
     section = classes.get(activity.slug)
     if not isinstance(section, SequenceConfig):
         count = len(activity.movements)

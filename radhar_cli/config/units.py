@@ -1,4 +1,4 @@
-"""Units of keys: what a value with a unit, or a key in another unit, would be in ours."""
+"""Units of keys: values with a unit, or under a key in another unit, converted into ours."""
 
 import re
 from collections.abc import Iterable
@@ -103,7 +103,7 @@ _USUAL: dict[str, tuple[str, ...]] = {
 
 
 def number_in_another_unit(key: str, number: float, low: float, high: float) -> str | None:
-    """Say what a number beyond its range is if another unit was meant, as "175 cm is 1.75".
+    """Describe a number beyond its range in another unit that may be meant: "175 cm is 1.75".
 
     Args:
         key: dotted key.

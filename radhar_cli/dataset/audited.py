@@ -1,4 +1,4 @@
-"""What `radhar audit` found of a data set, where it lies beside it: read for cards and reports."""
+"""Results of `radhar audit` that lie beside a data set, read for cards and reports."""
 
 from math import isfinite
 from pathlib import Path
@@ -16,7 +16,7 @@ MAX_WORDS = 1000  # characters
 
 
 class AuditedLine(NamedTuple):
-    """How often the class is told from something that is not the movement."""
+    """Share of samples whose class is told from something that is not the movement."""
 
     part: str  # numbers, recordings, margins, noise, clouds
     name: str

@@ -1,4 +1,4 @@
-"""What a worker does: synthesise consecutive rows, write their PNGs, then their shard."""
+"""Batches of a worker: synthesis of consecutive rows, their PNGs, then their shard."""
 
 import os
 import platform
@@ -60,7 +60,7 @@ def check_scenes(
         progress: is told of every scene.
 
     Returns:
-        The scenes, and warnings of what was found in them.
+        The scenes, and their warnings.
     """
     rows, drawn = Rows.of(config), list[tuple[Scene, Flags]]()
     places = rows.spread_progressively(CHECKED_SCENES)

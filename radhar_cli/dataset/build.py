@@ -105,7 +105,6 @@ def build_part(
     Args:
         config: that of the data set.
         folder: output folder of the data set.
-        part: the part.
         jobs: number of worker processes.
         progress: is told of every sample and warning.
         overwrite: start over where the folder holds another data set of radhar.

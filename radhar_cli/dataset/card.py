@@ -153,7 +153,7 @@ def draw_gallery(data: Dataset, name: str) -> bytes:
 
 
 def _describe_axes(data: Dataset, name: str) -> str:
-    """Say what the sides of an image of a map are, with units, and what its colours are."""
+    """Describe the axes of an image of a map, with units, and its colours."""
     (rows, row_unit), (columns, column_unit) = row_axis(name), column_axis(name)
     if (edges := data.extent(name)) is None:
         sides = f"across: {columns} ({column_unit}); up: {rows} ({row_unit})"
@@ -208,7 +208,7 @@ def compose_card(data: Dataset, more: Mapping[str, Any], reading: str) -> str:
 
 
 def _summary(data: Dataset) -> str:
-    """Say what the data set holds: samples, maps, where they come from, how they are split."""
+    """Summarise the data set: its samples, maps, origin and split."""
     config, (height, width) = data.config, data.config.image.size_px
     maps = len(config.maps)
     if isinstance(config, MeasuredConfig):
@@ -253,7 +253,7 @@ def _radar_in_words(config: Config) -> str:
 
 
 def _maps(data: Dataset) -> str:
-    """Write the table of maps with their axes, and what a level means."""
+    """Write the table of maps with their axes, and the meaning of a level."""
     lines = []
     for name in data.config.maps:
         reach = "/extent of dataset.h5"
@@ -272,7 +272,7 @@ def _maps(data: Dataset) -> str:
 
 
 def _making(data: Dataset) -> str:
-    """Say which command, seed and versions make the data set again."""
+    """Describe the command, seed and versions that make the data set again."""
     config = data.config
     library_versions = ", ".join(
         f"{library} {version}" for library, version in data.versions.items()

@@ -1,4 +1,4 @@
-"""Parts of the data card that say what is in a data set: classes, arrays, people, streams."""
+"""Parts of the data card on the content of a data set: classes, arrays, people, streams."""
 
 import numpy as np
 
@@ -62,7 +62,7 @@ def _spread(counts: np.ndarray) -> str:
 
 
 def _describe_points(data: Dataset) -> str:
-    """Say how many points frames have, and frames samples; COLUMNS are those of a point."""
+    """Describe the numbers of frames a sample and points a frame, and the columns of a point."""
     frames = data.products["points_start"].counts - 1
     points = data.products["points"].counts
     a_frame = points / np.maximum(frames, 1)

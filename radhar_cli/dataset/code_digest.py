@@ -1,4 +1,4 @@
-"""What identifies code that a user added: the files it is written in, and the numbers it holds.
+"""Identity of code that a user added: the files it is written in, and the numbers it holds.
 
 Two versions of a function should have two digests, also where the change lies in a function that it
 calls, in another file of the user's, or in the arguments of a partial function. Installed packages
@@ -101,7 +101,7 @@ class _Reader:
 
 
 def _state(value: Any) -> Any:
-    """What an object holds; a data class's fields alone, beside which caches may lie."""
+    """Return the state of an object; of a data class the fields alone, without caches."""
     if is_dataclass(value) and not isinstance(value, type):
         return {field.name: getattr(value, field.name, None) for field in fields(value)}
     return vars(value)
@@ -136,10 +136,10 @@ def _sources(modules: Iterable[str], extensions: tuple[str, ...]) -> Iterator[Pa
             continue
         yield path
         for value in [*vars(module).values()]:
-            held = value.__name__ if isinstance(value, ModuleType) else None
-            held = held or getattr(value, "__module__", None)
-            if isinstance(held, str):
-                waiting.append(held)
+            module_name = value.__name__ if isinstance(value, ModuleType) else None
+            module_name = module_name or getattr(value, "__module__", None)
+            if isinstance(module_name, str):
+                waiting.append(module_name)
 
 
 def _file_of(module: ModuleType) -> Path | None:

@@ -18,7 +18,7 @@ def label_names(config: AnyConfig) -> tuple[str, ...]:
 
 
 def label_columns(scene: Scene, motion: Motion, image: MapImage, names: Sequence[str]) -> Levels:
-    """Label each column of an image with what is under way at the time of its middle.
+    """Label each column of an image with the movement under way at the time of its middle.
 
     A motion that names no phases, or others than PHASES, is labelled with its class.
 

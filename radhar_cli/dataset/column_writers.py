@@ -50,7 +50,7 @@ def column_writers(
 
     Args:
         file: the unfinished dataset.h5; the datasets of /scene are in it.
-        check: raises what went wrong with the file, of `new_hdf5`.
+        check: raises errors of writing the file, of `new_hdf5`.
         config: config of the data set.
         table: the unfinished scenes.csv.
 
@@ -68,7 +68,7 @@ class ChunkWriter:
     """Copies maps, power and slow time, a compressed chunk a sample, as the bytes that they are.
 
     Chunks are stored in runs of RUN rows, or of RUN_BYTES, dataset after dataset: the file's layout
-    does not depend on how shards cut the rows, and who reads one map reads long stretches.
+    does not depend on how shards cut the rows, and a reader of one map reads long stretches.
     """
 
     def __init__(self, file: h5py.File, check: Callable[[], None], config: AnyConfig) -> None:

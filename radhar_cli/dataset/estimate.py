@@ -65,7 +65,7 @@ class Estimate:
 
 @dataclass(frozen=True)
 class AtLeast:
-    """What is known of the cost of a build where no sample was finished in time."""
+    """Least cost of a build of which no sample was finished in time."""
 
     samples: int  # in the data set
     seconds_range: tuple[float, float]  # of the wall time: from some time on
@@ -154,7 +154,7 @@ def estimate(
 
 
 class WrittenSamples(NamedTuple):
-    """Size of samples in the HDF5 file, and what it takes to write them."""
+    """Size of samples in the HDF5 file, and the processor time to write them."""
 
     sample_bytes: float  # of each
     sample_seconds: float  # processor time of each, s
@@ -162,11 +162,10 @@ class WrittenSamples(NamedTuple):
 
 
 def encode_samples(config: Config, rows: Sequence[SampleRow]) -> WrittenSamples:
-    """Encode samples as a shard, and one alone, to see what samples and shards cost.
+    """Encode samples as a shard, and one alone, to tell the cost of samples and shards.
 
     Args:
         config: that of the data set.
-        rows: the samples.
     """
     owner = identity_hash(identity(config))
 
@@ -193,7 +192,7 @@ def scale_up(
     Args:
         config: that of the data set.
         trial: samples of it, one at least.
-        written: what it takes to write them.
+        written: cost of writing them.
         jobs: number of processes.
         before: processor time of a build before its processes start, s.
     """

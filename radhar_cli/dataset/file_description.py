@@ -1,4 +1,4 @@
-"""What dataset.h5 says of itself: labels, splits and keys, and the attributes of all datasets."""
+"""Metadata within dataset.h5: labels, splits and keys, and the attributes of all datasets."""
 
 import json
 from typing import Any
@@ -107,12 +107,12 @@ def _describe_map(file: h5py.File, config: AnyConfig, name: str) -> None:
 
 
 def describe_levels(image: ImageConfig, white: str = "level 255", black: str = "level 0") -> str:
-    """Say which powers the brightest and the darkest level of decibels are.
+    """Describe the powers at the brightest and the darkest level of decibels.
 
     Args:
         image: section `image` of the config.
-        white: what the brightest level is called.
-        black: what the darkest level is called.
+        white: name of the brightest level.
+        black: name of the darkest level.
     """
     span = f"{image.dynamic_range_db:g} dB"
     if isinstance(image.reference, AbsoluteReference):
@@ -137,7 +137,7 @@ def _common_extent(extents: h5py.Dataset) -> tuple[float, float, float, float] |
 
 
 def _describe_columns_of_map(file: h5py.File, config: AnyConfig, name: str) -> None:
-    """Write the attributes of what is stored of a map besides its levels: power, column labels."""
+    """Write the attributes of a map's arrays besides its levels: power, column labels."""
     if config.output.power is not None:
         file[f"power/{name}"].attrs["unit"] = f"dB below /largest_db/{name}"
         file[f"power/{name}"].attrs["meaning"] = "resized power, not clipped; rows as in /maps"

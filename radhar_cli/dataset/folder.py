@@ -1,4 +1,4 @@
-"""The output folder: one run at a time, only its own data set, and what is already finished."""
+"""The output folder: one run at a time, only its own data set, and its finished parts."""
 
 import json
 import os
@@ -68,7 +68,7 @@ def reserve(
     Args:
         folder: output folder.
         config: that of the data set.
-        overwrite: remove what radhar has built there before.
+        overwrite: remove an earlier build of radhar.
         part: the part of the data set that is built, K/N; None for all of it.
         allowed: names that a folder without a data set may hold already.
 
@@ -108,8 +108,7 @@ def refuse_foreign_files(
     """Refuse a folder that holds other files than those that radhar leaves there.
 
     Args:
-        folder: the folder.
-        content: what it lacks, for the message: "radhar data set".
+        content: content that it lacks, for the message: "radhar data set".
         allowed: names that it may hold.
         error: type of the error.
 
@@ -130,8 +129,7 @@ def refuse_differences(
     """Refuse a folder that holds another data set, or another run.
 
     Args:
-        folder: the folder.
-        content: what it holds, for the message: "data set".
+        content: content that it holds, for the message: "data set".
         differing: a line for each difference; none of them is no reason to refuse.
         error: type of the error.
 
@@ -190,7 +188,7 @@ def holds_samples(folder: Path) -> bool:
 
 
 def clean_up(folder: Path) -> None:
-    """Mark a folder as built (dataset.h5 may be damaged later); remove what only a build needs."""
+    """Mark a folder as built (dataset.h5 may be damaged later); remove files of the build."""
     (folder / WORK / layout.BUILT).touch()
     _remove_batches(folder)
     remove_unfinished(folder)

@@ -65,7 +65,7 @@ def identity(config: AnyConfig) -> dict[str, Any]:
 
 
 def identity_hash(named: dict[str, Any]) -> str:
-    """SHA-256 of the keys and versions of an identity, in hex: what shards are marked with."""
+    """SHA-256 of the keys and versions of an identity, in hex, which marks shards."""
     text = json.dumps([named["keys"], named["versions"]], sort_keys=True)
     return hashlib.sha256(text.encode()).hexdigest()
 

@@ -86,8 +86,7 @@ def gray_of_bytes(data: bytes, where: Path) -> Levels:
     """Levels [H, W] of the bytes of an image file, as `read_gray` reads them of the file.
 
     Args:
-        data: the bytes.
-        where: what messages call it.
+        where: name of the image in messages.
     """
     with _open_image(where, None, data) as image:
         levels = stored_levels(image)
@@ -119,7 +118,7 @@ def _open_image(
 
 
 def _header_problem(image: Image.Image, size: tuple[int, int] | None) -> str | None:
-    """Say what is wrong with the size or the mode of an image; None if nothing is."""
+    """Describe the problem with the size or the mode of an image; None without one."""
     height, width = image.height, image.width
     if size is not None and (height, width) != size:
         return (

@@ -36,7 +36,7 @@ def sample(
     """Synthesise one sample of a data set: the same as in a dataset.h5 of this config, bit for bit.
 
     Args:
-        config: config of the data set, or its path; its `maps` and `output` say what is made.
+        config: config of the data set, or its path; its `maps` and `output` name the products.
         activity: slug, S1 to S12 or Activity, one of the config's; None where it has but one.
         index: number of the sample within its class; may lie beyond `samples_per_class`.
         seed: seed instead of the config's.

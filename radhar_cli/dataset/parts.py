@@ -28,7 +28,6 @@ class DataSetPart:
         """Read a part from its text K/N.
 
         Args:
-            text: the text.
             where: option or file, for the message.
 
         Raises:

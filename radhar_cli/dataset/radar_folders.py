@@ -13,10 +13,10 @@ RADARS = "radars.json"
 
 
 def reserve_radars(folder: Path, names: Iterable[str]) -> dict[str, Path]:
-    """Take a folder for what is made of several radars, and write the file that lists them.
+    """Take a folder for the data sets of several radars, and write the file that lists them.
 
     Args:
-        folder: the folder, which need not exist; what its radars' folders hold is not looked at.
+        folder: the folder, which need not exist; folders of its radars are not looked into.
         names: names of the radars.
 
     Returns:
@@ -27,20 +27,20 @@ def reserve_radars(folder: Path, names: Iterable[str]) -> dict[str, Path]:
     """
     listed = sorted(names)
     refuse_file(folder)
-    held = radars_of(folder)
-    if held and held != listed:
+    stored_radars = radars_of(folder)
+    if stored_radars and stored_radars != listed:
         raise FolderError(
-            f"{folder}: holds the radars {', '.join(held)}, not {', '.join(listed)}; choose an "
-            "empty folder"
+            f"{folder}: holds the radars {', '.join(stored_radars)}, not {', '.join(listed)}; "
+            "choose an empty folder"
         )
-    if not held:
+    if not stored_radars:
         refuse_foreign_files(folder, f"{RADARS} of several radars", allowed=())
     else:
         refuse_foreign_files(folder, "radar of these names", allowed=(RADARS, *listed))
     folders = {name: folder / name for name in listed}
     for path in (*folders.values(), folder / RADARS):
         refuse_links(folder, path)
-    if not held:
+    if not stored_radars:
         folder.mkdir(parents=True, exist_ok=True)
         write_text(folder / RADARS, json.dumps({"radars": listed}) + "\n")
     return folders
@@ -86,11 +86,11 @@ def folder_of_all_radars(folder: Path) -> Path:
 
 
 def describe_missing(path: Path, otherwise: str = "no such file or folder") -> str:
-    """Say that the data set of one of several radars is not made yet, and what makes it.
+    """Describe the missing data set of one of several radars, with the command that makes it.
 
     Args:
         path: path of nothing.
-        otherwise: what is said of any other path.
+        otherwise: description of any other path.
     """
     if (target := folder_of_all_radars(path)) == path:
         return otherwise

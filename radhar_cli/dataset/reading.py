@@ -43,7 +43,7 @@ class Dataset(Closing):
         label: uint8 [N], place in `classes`, as in every other form of the data set.
         split: uint8 [N]; 0 train, 1 validation, 2 test.
         classes: name of every label [C]: the slugs, in the order of the config's `activities`.
-        labels: uint8 [N, len(class_slugs)], 1 for what anybody in the scene does; None without
+        labels: uint8 [N, len(class_slugs)], 1 for activities of anybody in the scene; None without
             `people`.
         person_label: int16 [N, 1 + people], the class of each person, place in `class_slugs`, -1
             absent; None without `people`.
@@ -58,7 +58,7 @@ class Dataset(Closing):
         frame_label: {map name: int16 [N, person, W]} of streams, places in `frame_classes`, -1
             nobody.
         frame_classes: names of the labels in time of streams; empty of other data sets.
-        class_slugs: `classes`, then what only `people` may do.
+        class_slugs: `classes`, then activities of `people` alone.
 
     Raises:
         FolderError: it is not a data set of radhar, or is damaged; names file and field.
@@ -301,7 +301,7 @@ def open_dataset(path: str | Path) -> Dataset:
 
 
 def why_missing(path: Path) -> str:
-    """Say why a path leads to no dataset.h5, and what makes one."""
+    """Describe why a path leads to no dataset.h5, with the command that makes one."""
     path = path.parent if path.name == layout.DATASET else path
     target = folder_of_all_radars(path)
     if (parts := path / layout.PARTS).is_dir():

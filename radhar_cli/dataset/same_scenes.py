@@ -9,7 +9,7 @@ OF_PEOPLE = ("subject.", "motion.", "timing.", "classes.", "people.")
 
 
 def differing_columns(first: Dataset, other: Dataset) -> list[str]:
-    """Names of what two radars of the same scenes should have alike and do not.
+    """Names of columns that two radars of the same scenes should have alike and do not.
 
     These are classes, samples, splits, and the columns of /scene of people and their room.
     """

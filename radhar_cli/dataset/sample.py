@@ -79,7 +79,7 @@ class StoredSample(NamedTuple):
 
 
 class SampleRow(NamedTuple):
-    """One row of a data set: a sample, the numbers of its scene, and what there is to warn of."""
+    """One row of a data set: a sample, the numbers of its scene, and its warnings."""
 
     sample: StoredSample
     values: Float  # numbers of `scene_fields.fields` [field]
@@ -94,7 +94,6 @@ def synthesise(scene: Scene, plan: Plan, config: Config) -> StoredSample:
     """Run the plan of a data set on one scene.
 
     Args:
-        scene: the scene.
         plan: plan of the images (`plan_images`).
         config: config of the data set, whose classes the labels number; that of the scene has but
             the class that is performed.
@@ -106,11 +105,10 @@ def synthesise(scene: Scene, plan: Plan, config: Config) -> StoredSample:
 
 
 def store(recording: Results, scene: Scene, config: Config) -> StoredSample:
-    """Collect what a data set stores of a scene's products.
+    """Collect the products of a scene that a data set stores.
 
     Args:
         recording: products of the plan of a data set.
-        scene: the scene.
         config: config of the data set, as of `synthesise`.
 
     Raises:
@@ -162,7 +160,6 @@ def labels_of(scene: Scene, config: Config) -> dict[str, NDArray[Any]]:
     """Labels of everybody in a scene: LABELS [class] and PERSON_LABEL [person] by name.
 
     Args:
-        scene: the scene.
         config: config of the data set; labels are places in its `every_class`.
 
     Returns:

@@ -108,7 +108,7 @@ def _sample_entry(data: Dataset, row: int, extents: dict[str, NDArray[Any]]) -> 
 
 
 def _maps(data: Dataset, row: int, extents: dict[str, NDArray[Any]]) -> Iterator[MapLevels]:
-    """Yield the stored maps of a row, but for sheets of what is stored as frames."""
+    """Yield the stored maps of a row, but for sheets of maps that are stored as frames."""
     image = data.config.image
     for name in data.maps:
         if name not in FRAME_MAPS:

@@ -95,7 +95,6 @@ def values(scene: Scene, columns: tuple[Field, ...], error_db: float = nan) -> F
     """Numbers of a scene in the units of the config keys [field], NaN where one does not apply.
 
     Args:
-        scene: the scene.
         columns: the fields.
         error_db: measured error of the direct engine, for the field ERROR.
     """
@@ -111,7 +110,7 @@ def values(scene: Scene, columns: tuple[Field, ...], error_db: float = nan) -> F
 
 
 def movement_onset(scene: Scene) -> float:
-    """When that begins which a scene's class is named by, s; NaN where no model says so.
+    """Return the time at which the movement begins that names a scene's class, s; or NaN.
 
     It is below 0 where the movement is under way as the recording begins.
     """

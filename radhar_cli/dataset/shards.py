@@ -145,7 +145,7 @@ def encode_shard(
 
 
 def _checksum(owner: str, start: int, stop: int, content: memoryview) -> str:
-    """SHA-256 of what a shard says of itself, and of its content, in hex."""
+    """SHA-256 of a shard's owner, rows and content, in hex."""
     digest = hashlib.sha256(f"{owner} {start} {stop}\n".encode())
     digest.update(content)
     return digest.hexdigest()
@@ -213,7 +213,6 @@ def require_tiling(
 
     Args:
         folder: output folder, for the message.
-        shards: the shards.
         count: number of rows of the data set.
         remedy: advice on runs of missing rows, if not to run the same command again.
         unusable: shards that were left out, and why.

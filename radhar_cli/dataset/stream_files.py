@@ -1,4 +1,4 @@
-"""What a data set of streams has beside its images: a table of segments, and a labelled picture."""
+"""Files of a data set of streams beside its images: a table of segments, and a labelled picture."""
 
 import csv
 import io

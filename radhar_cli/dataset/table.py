@@ -95,6 +95,6 @@ def entries(data: Dataset) -> Iterator[Entry]:
 
 
 def _slugs(data: Dataset, row: int) -> str:
-    """Slugs of what anybody does in the scene of a row, separated by spaces."""
+    """Slugs of the activities of anybody in the scene of a row, separated by spaces."""
     assert data.labels is not None
     return " ".join(data.class_slugs[label] for label in np.flatnonzero(data.labels[row]))

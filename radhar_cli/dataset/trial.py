@@ -1,4 +1,4 @@
-"""Samples made on trial, by the processes of a build, to see what a data set will cost."""
+"""Samples made on trial, by the processes of a build, to estimate the cost of a data set."""
 
 import os
 from collections.abc import Iterator, Mapping, Sequence
@@ -48,7 +48,7 @@ class TrialSample(NamedTuple):
 
 
 class _Preparations(NamedTuple):
-    """What a process makes once for all samples of a batch."""
+    """Objects that a process makes once for all samples of a batch."""
 
     config: Config
     plan: Plan
@@ -82,7 +82,6 @@ def make_trial_sample(config: Config, data_set: str, row: int) -> TrialSample:
     Args:
         config: that of the data set.
         data_set: hash of its identity.
-        row: row of the sample.
     """
     config, plan, rows, columns, table = _prepare(config, data_set)
     started, before = monotonic(), process_time()
@@ -110,7 +109,7 @@ class Trial(NamedTuple):
 
     @property
     def samples(self) -> tuple[TrialSample, ...]:
-        """Samples that tell what one takes: the further ones, or else the first."""
+        """Samples that tell the time of one: the further ones, or else the first."""
         return self.further or self.first
 
 

@@ -60,7 +60,7 @@ def verify(
 
     Args:
         folder: output folder of `generate`, or its dataset.h5.
-        samples: how many to synthesise anew, spread evenly over the rows.
+        samples: number of samples to synthesise anew, spread evenly over the rows.
         motion: folder of the motion files of its classes; None re-synthesises no sample of them: a
             stored config is not trusted to name files.
         progress: is told of each checksum, sample and PNG file.
@@ -154,7 +154,7 @@ def _verify_attributes(data: Dataset, report: Verification) -> None:
 
 
 def _verify_config_and_table(data: Dataset, folder: Path, report: Verification) -> None:
-    """Compare config.yaml and scenes.csv with what dataset.h5 says."""
+    """Compare config.yaml and scenes.csv with dataset.h5."""
     for name in (CONFIG, SCENES):
         if not (folder / name).exists():
             report.problems.append(f"{name}: is missing")
@@ -264,7 +264,7 @@ class _SampleComparison:
             self._say(f"/entropy/{name}[{row}]: {entropy}, not {image.entropy}")
 
     def _tolerance(self, rounding: float) -> float:
-        """What of a difference is tolerated: that of rounding under other versions, else none."""
+        """Return the tolerance of a difference: that of rounding under other versions, else 0."""
         return 0.0 if self._is_bitwise else rounding
 
 

@@ -60,7 +60,6 @@ def settings(aim_db: float, waveform: Waveform, highest_frequency: float) -> Set
 
     Args:
         aim_db: Relative L2 error after the canceller, dB.
-        waveform: The radar.
         highest_frequency: Fundamental of the fastest motion, Hz.
     """
     coarse = 10 ** ((aim_db - SPACING_DB) / 120)
@@ -120,10 +119,8 @@ def measured_db(
     Args:
         y: Signal [M] before the canceller, in units of `unit`.
         source: Paths that y is the sum of.
-        waveform: The radar.
-        canceller: The canceller.
         unit: Amplitude in which y is given.
-        roughness: Where interpolation is likely to err.
+        roughness: Likely errors of interpolation.
     """
     taps = canceller.taps if isinstance(canceller, Fir) else NO_CANCELLER.taps
     probes = choose_probes(
@@ -171,7 +168,7 @@ def choose_probes(powers: Float, pulses: int, roughness: Roughness = EVEN, lost:
     Args:
         powers: Sum of |x|^2 over each segment of pulses [segments].
         pulses: Number M of pulses of x.
-        roughness: How large |e|^2 may be in each segment, up to a factor, and their pulses.
+        roughness: Likely |e|^2 in each segment, up to a factor, and their pulses.
         lost: Number of pulses by which the canceller shortens a signal.
     """
     starts = np.arange(0, pulses, roughness.step)

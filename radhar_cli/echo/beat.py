@@ -46,7 +46,6 @@ def beat_matrix(delay: Float, amplitude: Float, waveform: Waveform) -> Complex:
     Args:
         delay: Delays tau [I, M], s.
         amplitude: Amplitudes A [I, M].
-        waveform: The radar.
     """
     coarse = isqrt(waveform.n_adc - 1) + 1
     fine = -(-waveform.n_adc // coarse)

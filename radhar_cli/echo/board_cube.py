@@ -107,7 +107,6 @@ def exact_cube(channels: Sequence[PathSource], board: Board) -> tuple[Complex, f
 
     Args:
         channels: Paths of each virtual channel [V].
-        board: The board.
 
     Returns:
         Samples [frame, loop, virtual, sample], and P_s, the mean over frames, loops and channels of
@@ -215,7 +214,6 @@ def still_samples(channels: Sequence[PathSource], board: Board) -> Complex:
 
     Args:
         channels: Paths of each virtual channel [V].
-        board: The board.
     """
     samples = np.empty((board.channels, board.samples), complex)
     for v, source in enumerate(channels):
@@ -403,8 +401,7 @@ def measured_db(
     Args:
         cube: Samples [frame, loop, virtual, sample].
         channels: Paths of each virtual channel [V].
-        board: The board.
-        roughness: How large the squared error of each frame may be [frames], up to a factor.
+        roughness: Likely squared error of each frame [frames], up to a factor.
     """
     powers = np.array([float(np.vdot(frame, frame).real) for frame in cube])
     total = float(powers.sum())

@@ -50,7 +50,7 @@ FAINTEST_SINGLE = 1e-30
 
 
 class Accuracy(NamedTuple):
-    """How a slow-time signal was made, and its error."""
+    """Settings by which a slow-time signal was made, and its error."""
 
     step: int  # pulses from knot to knot; 1 where paths are taken at every pulse
     table_oversampling: int  # points of the table of G per fast-time sample

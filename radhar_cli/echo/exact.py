@@ -40,7 +40,6 @@ def beat_blocks(
 
     Args:
         source: The paths.
-        waveform: The radar.
         receiver: Impairments, in order.
         motion_in_chirp: Whether paths go on moving during a chirp.
     """
@@ -68,7 +67,7 @@ def exact_echo(
 ) -> list[Complex]:
     """Signals x [K, M] of several looks at one echo, in one pass through its beat matrix.
 
-    Looks are of one waveform, with the same taps. Where what stands still does not matter
+    Looks are of one waveform, with the same taps. Where static echoes do not matter
     (`static`), the first pulse is taken out of every one: of an echo that does not move, however
     strong, nothing is left to round.
     """

@@ -56,7 +56,6 @@ def gridded_sum(delay: Float, amplitude: Float, chirps: Chirps) -> tuple[Complex
     Args:
         delay: Delays [I, V, POWERS] (s) of the paths at the nodes.
         amplitude: Amplitudes [I, V, POWERS] there, with their signs.
-        chirps: The chirps.
 
     Returns:
         Samples [V, L, N], in single precision, and the sum of all squared amplitudes.
@@ -104,7 +103,7 @@ def _kernel(z: Float) -> Float:
 
 @lru_cache(maxsize=16)
 def _window(samples: int) -> tuple[tuple[Coefficients, ...], Complex]:
-    """Weights of the points, and what the window leaves of each sample.
+    """Weights of the points, and factors that undo the window for each sample.
 
     Returns:
         Coefficients [WIDTH, DEGREE + 1] of the powers of the place of a beat between two points,

@@ -60,7 +60,6 @@ def steady_profile(
     Args:
         delay: Delay of the path, s.
         amplitude: Amplitude for unit transmit power, without the reflection.
-        waveform: The radar.
         reflected: Coefficient of reflection at frequencies [N] (Hz), [N]; None is 1 at all of them.
     """
     path = Paths(np.array([[delay]]), np.array([[amplitude]]))
@@ -103,7 +102,6 @@ def _long_pulses(paths: Paths, waveform: Impulse, half: int) -> Profiles:
 
     Args:
         paths: Paths, each pulse added at its delay.
-        waveform: The radar.
         half: Samples to both sides of its middle at which a pulse is computed.
     """
     step, (first, _) = 2 * waveform.range_step / SPEED_OF_LIGHT, waveform.profile

@@ -82,7 +82,7 @@ class Knots(NamedTuple):
 
 
 class Spacing(NamedTuple):
-    """How close knots must be.
+    """Density of the knots that an accuracy needs.
 
     There are `per_second`, or more, so that from one to the next an amplitude changes by at most
     `amplitude_change` of itself, or of its usual size where it passes zero, and G's fastest
@@ -95,7 +95,7 @@ class Spacing(NamedTuple):
 
 
 class Roughness(NamedTuple):
-    """How large the squared error of interpolation is in each segment of pulses."""
+    """Squared error of interpolation in each segment of pulses."""
 
     step: int  # number of pulses of a segment
     squares: Float  # up to a factor [segments]; empty where nothing is interpolated
@@ -108,7 +108,7 @@ _SQUARES_BY[: REACH + 1] = np.square(SHIFTED_BY)
 
 
 class PathsAtKnots(NamedTuple):
-    """Knots that resolve the motion of a recording, and what they show."""
+    """Knots that resolve the motion of a recording, and the motion that they show."""
 
     step: int  # pulses from knot to knot; 1 where nothing is interpolated
     moving: Bool  # which paths change at all [I]
@@ -179,7 +179,7 @@ def mean_power(source: PathSource, waveform: Waveform, per_second: float) -> flo
 
 
 def _excess(paths: Paths, w: Waveform, spacing: Spacing) -> float:
-    """The largest change from one knot to the next, in units of what the spacing allows."""
+    """The largest change from one knot to the next, over the change that the spacing allows."""
     moved, least, every = 0.0, 1.0, max(1, len(paths.delay) // COMPARED)
     rows = every * max(1, BLOCK // paths.delay.shape[1])
     for start in range(0, len(paths.delay), rows):  # so that it stays in the cache

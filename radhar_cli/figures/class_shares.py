@@ -1,4 +1,4 @@
-"""How often the class is told from what is not the movement: intervals beside chance."""
+"""Shares of samples whose class is told without the movement: intervals beside chance."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass

@@ -25,8 +25,8 @@ def curves_png(
     Args:
         runs: rows of metrics of each epoch, by name of the run.
         best: kept epoch, by name of the run.
-        score: what the score is, for its axis.
-        loss: what the loss is, for its axis.
+        score: name of the score, for its axis.
+        loss: name of the loss, for its axis.
 
     Returns:
         The PNG file.

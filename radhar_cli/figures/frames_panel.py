@@ -143,7 +143,7 @@ def _limits(content: BoardFrames) -> tuple[Float, float]:
 
 
 def speed_of_colours(speeds: Float) -> float:
-    """Speed at the ends of the colours of points, m/s: that which nine in ten do not exceed.
+    """Speed at the ends of the colours of points, m/s: nine points in ten do not exceed it.
 
     A few fast points, as of noise, which may be as fast as the radar sees, leave it as it is.
 

@@ -32,12 +32,12 @@ def page_of_rows(
     """Make a figure with a row of panels beside each name.
 
     Args:
-        rows: what the panels of a row are to show, by name.
+        rows: contents of the panels of each row, by name.
         size: width and height of a panel, inches.
         margin: space beside and above the panels, inches.
 
     Returns:
-        The figure, and each panel with what it is to show.
+        The figure, and each panel with its content.
     """
     columns = max(map(len, rows.values()))
     figure = page(size[0] * columns + margin[0], size[1] * len(rows) + margin[1])

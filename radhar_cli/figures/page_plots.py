@@ -36,7 +36,7 @@ class PointFrames(NamedTuple):
 
 @dataclass(frozen=True)
 class LevelScale:
-    """What the 255 levels of a map stand for, and its colours."""
+    """Values and colours of the 255 levels of a map."""
 
     low: float  # value of level 0
     high: float  # value of level 255
@@ -72,7 +72,7 @@ class MapLevels:
     Attributes:
         name: name of the map.
         levels: levels [frame, row, column], lowest row first.
-        scale: what they stand for.
+        scale: values and colours of the levels.
         columns, rows: axes.
         times: times of the frames [frame], s, to show the frame of each instant; None shows a
             cursor where the columns are times.
@@ -90,7 +90,6 @@ def plot_space(view: SceneView, cloud: PointFrames | None, board: Board | None) 
     """Plot skeletons and points in 3-D.
 
     Args:
-        view: view of the scene.
         cloud: points of frames; None for none.
         board: board whose place is known, so that points are in the axes of the scene; else None.
     """

@@ -79,8 +79,6 @@ def make_entry(
     """Make the entry of a scene.
 
     Args:
-        view: view of the scene.
-        plots: its plots.
         title: line above.
         notes: remarks, a line each.
         numbers: numbers of the scene by config key.

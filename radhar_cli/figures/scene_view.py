@@ -1,4 +1,4 @@
-"""What the page of a scene shows besides maps: skeletons in motion, true Doppler, the radar."""
+"""Parts of the page of a scene besides maps: skeletons in motion, true Doppler, the radar."""
 
 from collections.abc import Mapping, Sequence
 from typing import Any, NamedTuple
@@ -42,7 +42,7 @@ class SceneView(NamedTuple):
 def view_scene(scene: Scene, motions: Sequence[Motion]) -> SceneView:
     """Compute the view of a scene: everybody's skeleton and true Doppler, in order of `motions`.
 
-    Of an empty scene there are none; maps reach as far as with who would stand there.
+    An empty scene has no skeletons; maps reach as far as with a person who would stand there.
     """
     results = record(scene, ("antennas", "wall", "waveform"), motions=tuple(motions))
     antennas, wall, waveform = results["antennas"], results["wall"], results["waveform"]

@@ -1,4 +1,4 @@
-"""Time against difference of settings: what saves time, at which price, and what costs it."""
+"""Time against difference of settings: savings, their price, and costs."""
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
@@ -85,7 +85,7 @@ def _height(mark: SettingMark) -> float:
 
 
 def _label_axes(axes: Axes, marks: Sequence[SettingMark], title: str) -> None:
-    """Write titles and limits, leave room for names, and say what marks mean."""
+    """Write titles and limits, leave room for names, and explain the marks."""
     ratios = [mark.ratio for mark in marks] or [1.0]
     low, high = min(*ratios, 0.8), max(*ratios, 1.5)
     span = log10(high / low)

@@ -44,7 +44,6 @@ def new_hdf5(path: Path, final: Path) -> Iterator[tuple[h5py.File, Callable[[], 
     SIGINT and SIGTERM wait for the check: what their handlers raise within a `write` crashes HDF5.
 
     Args:
-        path: where the file is written.
         final: name that errors give.
 
     Yields:

@@ -1,4 +1,4 @@
-"""What every reader of files from elsewhere needs: regular files alone, bounded JSON, safe text."""
+"""Access to files from elsewhere: regular files alone, bounded JSON, safe text."""
 
 import errno
 import json

@@ -5,9 +5,9 @@ The only package that imports PyTorch; the extra `train` installs it.
     settings        the YAML file of `radhar train`; registry: the networks and tasks it may name
     images/         labelled images or sequences of dataset.h5, or of class folders
     batches         which images make a step; augmentation
-    tasks/          what is learned, one task per file: targets, loss, score, report
+    tasks/          tasks to learn, one per file: targets, loss, score, report
     models/         one network per file; timm_networks: those of timm
-    machine         device, precision, reading processes, what is repeatable
+    machine         device, precision, reading processes, repeatable runs
     optimiser       learning rate, update
     learner         a training step, validation; training_set: what is learned from
     training        epochs, the best one, resuming; starting_point: --init

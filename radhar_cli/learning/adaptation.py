@@ -72,7 +72,7 @@ class Mixed:
 
 @dataclass(frozen=True)
 class AdaptOptions:
-    """How a run is adapted."""
+    """Options of the adaptation of a run."""
 
     map: str | None = None  # of a data set; None is the one of the training
     split: str = "all"  # of the images, where they have any
@@ -103,8 +103,7 @@ def adapt(
         run: folder of the run.
         data: a data set, or some rows of images that are open already.
         folder: folder of the copy.
-        device: where the network runs.
-        options: how it is adapted; None takes the defaults.
+        options: options of the adaptation; None takes the defaults.
         progress: receives messages.
 
     Returns:

@@ -77,7 +77,7 @@ def epoch_batches(order: Index, size: int) -> list[Index]:
 
 
 class Targets(Protocol):
-    """What is to be learned of every row of a set: a number, or an array."""
+    """Targets to be learned, a number or an array for every row of a set."""
 
     def __getitem__(self, row: int, /) -> ArrayLike: ...
 
@@ -117,7 +117,7 @@ class Reader:
 
         Args:
             pixels: images or sequences by row.
-            targets: what is to be learned of every row; None gives 0 for all.
+            targets: targets of every row; None gives 0 for all.
             augmentation: changes of training images; None leaves all as they are stored.
             workers: number of processes that read; 0 reads in this one.
             pin: keep batches in memory from which CUDA copies without waiting.

@@ -90,7 +90,6 @@ def find_joints(
         metadata: description of the model.
         model: network in evaluation mode, on the device.
         paths: data sets.
-        device: where the network is.
         map_name: product of a data set; None is the one of the training.
         split: split of a data set.
     """

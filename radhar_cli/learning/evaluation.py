@@ -122,7 +122,6 @@ def rows_of(images: ImageSet, split: str | None) -> tuple[Index, str]:
     """Rows of a split, and its name; all rows, and "all", where images come without a split.
 
     Args:
-        images: the set.
         split: train, val, test or all; None is test where there are such images, else val.
     """
     if images.samples.split is None:
@@ -149,7 +148,6 @@ def predict_batches(
         metadata: description of the model.
         pixels: images or sequences by row.
         rows: rows that are read.
-        device: where the network is.
         batch: rows at a time.
 
     Raises:
@@ -183,7 +181,6 @@ def predict(
         metadata: description of the model.
         images: labelled images, whose classes the model knows.
         rows: rows that are predicted.
-        device: where the network is.
         batch: rows at a time.
         progress: receives the number of rows done.
     """
@@ -217,7 +214,6 @@ def last_features(
         metadata: description of the model.
         images: images by row.
         rows: rows that are read.
-        device: where the network is.
     """
     reader = Reader(images.pixels, None)
     batches = list[Float]()
@@ -252,11 +248,10 @@ def predict_paths(
     Args:
         run: folder of the run.
         paths: images, folders of images, or data sets.
-        device: where the network runs.
         map_name: map of a data set; None is the one of the training.
         split: split of a data set.
         resize: bring images to the model's size.
-        say: receives what was done to make the images fit.
+        say: receives notes on images that were made to fit.
 
     Raises:
         RunError: the run is damaged, or finds no classes.
@@ -289,7 +284,7 @@ def open_unlabelled(
 
     Args:
         metadata: description of the model.
-        path: what to open.
+        path: image, folder of images or data set.
         map_name: map of a data set; None is the one of the training.
         split: split of a data set.
         resize: bring images to the model's size.
@@ -331,7 +326,6 @@ def measure_speed(
         run: folder of the run.
         images: images of the model's size.
         row: row of the image that is timed.
-        device: where the network runs.
         batch: images of the batch that is timed.
 
     Returns:

@@ -1,4 +1,4 @@
-"""The global filters of a trained network: what they pass, by spatial frequency."""
+"""Magnitudes of the global filters of a trained network, by spatial frequency."""
 
 from typing import Any
 

@@ -40,7 +40,7 @@ def wilson(correct: float, count: float) -> tuple[float, float]:
 
 @dataclass(frozen=True)
 class Groups:
-    """What of some samples varies together."""
+    """Groups of samples that vary together."""
 
     number: Index  # [N] of the person, recording, scene or sample
     kind: str  # which of these, in words
@@ -124,7 +124,7 @@ def _mean_over_strata(values: Float, stratum: Index) -> float:
 
 
 def _shrinkage(freedom: int) -> float:
-    """What of a number of samples is left, as the variance is that of few groups."""
+    """Return the factor (z / t)^2 on a number of samples whose variance is that of few groups."""
     return float((NORMAL / stdtrit(max(1, freedom), 0.975)) ** 2)
 
 
@@ -133,8 +133,8 @@ def numbers_of_share(key: str, right: Float, groups: Groups) -> dict[str, Any]:
 
     Args:
         key: key of the share, such as accuracy.
-        right: [N] 1 of what is right, 0 of what is not, or shares of it.
-        groups: what of them varies together.
+        right: [N] 1 where right, 0 where wrong, or shares.
+        groups: groups of them that vary together.
     """
     interval = None if _are_too_few(groups) else list(share_interval(right, groups.number))
     return {f"{key}_95": interval, **_over(groups)}
@@ -162,7 +162,7 @@ def interval_in_words(interval: Sequence[float] | None, over: Mapping[str, Any])
 
 
 def ends_in_words(ends: Sequence[float] | None, unit: str, over: Mapping[str, Any]) -> str:
-    """An interval in brackets, with what was drawn anew unless it was single samples.
+    """An interval in brackets, with the unit that was drawn anew unless it was single samples.
 
     Args:
         ends: low and high end; None of too few groups.

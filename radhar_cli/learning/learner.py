@@ -43,7 +43,7 @@ class Totals:
 
 
 class Learner:
-    """A network on its device, the task that it learns, and what it learns with.
+    """A network on its device, the task that it learns, and its optimiser.
 
     Attributes:
         model: network that is trained.
@@ -63,9 +63,8 @@ class Learner:
 
         Args:
             model: network with its initial weights.
-            task: what it learns, with the settings of the training.
+            task: task that it learns, with the settings of the training.
             normalise: normalisation from stored levels to inputs.
-            device: where it learns.
             precision: of the passes.
         """
         self.task, self.normalise = task, normalise
@@ -84,7 +83,7 @@ class Learner:
 
         Args:
             levels: uint8 [B, C, H, W] as they are stored, or clouds float32 [B, 6, T, points].
-            targets: what is to be learned [B, ...].
+            targets: targets [B, ...].
 
         Returns:
             Mean loss, and sum of the scores.

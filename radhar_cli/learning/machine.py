@@ -1,4 +1,4 @@
-"""How a run is executed on this machine: device, precision, reading processes."""
+"""Execution of a run on this machine: device, precision, reading processes."""
 
 import os
 

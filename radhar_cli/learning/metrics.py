@@ -1,4 +1,4 @@
-"""How good predictions are: confusion, precision and recall, calibration."""
+"""Quality of predictions: confusion, precision and recall, calibration."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass

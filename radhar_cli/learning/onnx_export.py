@@ -130,7 +130,7 @@ def _largest_difference(model: nn.Module, session: Any, metadata: RunMetadata) -
 
 
 def _names(metadata: RunMetadata) -> dict[str, tuple[str, ...]]:
-    """Names of what the outputs of a network stand for: joints, or classes."""
+    """Meanings of the outputs of a network: names of joints, or classes."""
     return {metadata.task.names_key: metadata.task.names(metadata)}
 
 

@@ -1,4 +1,4 @@
-"""What `model` and `target` of a training config may name: one line each.
+"""Values of `model` and `target` of a training config: one line each.
 
 A network or a task is a file of its own, which is imported when a config names it, so that a
 config is read without PyTorch. A module of RADHAR_EXTENSIONS adds a line of its own:
@@ -28,7 +28,7 @@ class NetworkChoice:
 
 @dataclass(frozen=True)
 class TaskChoice:
-    """What a network may learn."""
+    """Task that a network may learn."""
 
     place: str  # "module:class" of a `tasks.task.Task`
     of_sequences: bool = False  # asks for a network of frames or clouds
@@ -64,6 +64,6 @@ def image_channels_of(model: str) -> int:
 
 
 def load_place(place: str) -> Any:
-    """Import what "module:name" names."""
+    """Import the object named "module:name"."""
     module, _, name = place.partition(":")
     return getattr(import_module(module), name)

@@ -53,8 +53,7 @@ def evaluate(
     Args:
         runs: folders of runs, or weights' files.
         data: data sets, or trees of images.
-        options: what is evaluated, and which figures are drawn.
-        device: where the networks run.
+        options: options of the evaluation, and its figures.
         progress: receives the lines of the report and the images done.
 
     Raises:
@@ -129,7 +128,7 @@ def _begin_report(
 
 @dataclass
 class _Evaluation:
-    """Evaluation under way: what is found goes to a report, run by run and set by set."""
+    """Evaluation under way: results go to a report, run by run and set by set."""
 
     report: Report
     options: EvalOptions
@@ -144,7 +143,7 @@ class _Evaluation:
         self.report.line(line)
 
     def say_notes(self, eval_sets: Sequence[EvalSet]) -> None:
-        """Say what was done to make the images fit, and which were left out, each once."""
+        """Print, each once, the changes that made the images fit, and the images left out."""
         for note in dict.fromkeys(note for s in eval_sets for note in s.images.notes):
             self.say(note)
         left_out = (left_out_message(s.images, self.options.names) for s in eval_sets)
@@ -216,7 +215,7 @@ class _Evaluation:
 
 
 def _chosen_by(run: Run, eval_set: EvalSet, numbers: Mapping[str, Any]) -> str:
-    """Sentence that these images chose the epoch, and what to do for an accuracy of others."""
+    """Sentence that these images chose the epoch, and advice for an accuracy of others."""
     count, epochs = numbers["chose_the_epoch"], len(run.history)
     part = eval_set.split if count == numbers["images"] else f"{count} of these images"
     best = f"the best of {epochs} epochs" if epochs else "the best epoch"
@@ -326,10 +325,9 @@ def _show_filters(report: Report, runs: Sequence[Run]) -> None:
 
 
 def _add_audit(report: Report, name: str, data: Path, single: bool) -> None:
-    """Add the figure of what tells the classes besides the movement, if data have been audited.
+    """Add the figure of the audit's evidence, if data have been audited.
 
     Args:
-        report: the report.
         name: name of the data set.
         data: its path.
         single: whether it is the only one.

@@ -111,7 +111,7 @@ class RunMetadata(Section):
 
     @cached_property
     def task(self) -> Task:
-        """What the network has learned."""
+        """Task that the network has learned."""
         return create_task(self.settings)
 
     @property
@@ -231,7 +231,7 @@ def _first_problem(error: ValidationError) -> str:
 
 
 class TrainedOn(NamedTuple):
-    """Fingerprints of what a run has seen; empty where the run does not say."""
+    """Fingerprints of samples that a run has seen; empty where the run has none."""
 
     pixels: frozenset[str]  # of the images that it learned from
     scenes: frozenset[str]  # of the person and motion behind these

@@ -27,7 +27,6 @@ def write_run_summary(
         metadata: description of the run.
         history: all epochs.
         validation: score of the best epoch and its interval, by their keys.
-        device: where it learned.
     """
     best = best_epoch(history)
     series = {folder.name or str(folder): history}

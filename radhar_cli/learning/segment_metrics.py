@@ -1,4 +1,4 @@
-"""How good segments are: F1 by their overlap, and the edit score of their order.
+"""Quality of segments: F1 by their overlap, and the edit score of their order.
 
 A predicted segment counts as right if it overlaps a true one of its class by an IoU of at least k,
 and no other was predicted there before (Lea et al., Temporal convolutional networks for action

@@ -118,8 +118,8 @@ class TrainConfig(Section):
     model: Annotated[str, Field(min_length=1)] = "smallnet"
     """Network: smallnet, the paper's fftnet, any of timm's; of sequences framenet, cloudnet."""
     target: Target = "classes"
-    """Target of learning. classes: the main person's class; labels: what anybody does; count: the
-    number of people; person: who it is; frames: the class of every column of a stream; skeleton, of
+    """Target of learning. classes: the main person's class; labels: activities of everybody; count:
+    number of people; person: identity; frames: the class of every column of a stream; skeleton, of
     sequences: the joints in every frame."""
     map: str | None = None
     """Map that is learned from; null is the first one of the data set."""
@@ -155,7 +155,7 @@ class TrainConfig(Section):
     validation_share: Share = 0.2
     """Share of each class that validates, where images come without a split."""
     data_weights: tuple[Weight, ...] | None = None
-    """How often an epoch shows an image of each of several data sets; null is once."""
+    """Number of times an epoch shows an image of each of several data sets; null is once."""
     sampling: Literal["all", "balanced"] = "all"
     """Images of an epoch: all once, or balanced, every class equally often."""
     augment: AugmentConfig = AugmentConfig()

@@ -22,7 +22,7 @@ class TensorBoardCurves:
         Args:
             folder: folder of the run.
             metadata: description of the run.
-            score: name of what its accuracies are.
+            score: name of its score.
         """
         self.score = score
         remove_events(folder)

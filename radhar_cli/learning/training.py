@@ -69,7 +69,7 @@ class NoTrainingProgress(NoProgress):
 
 @dataclass(frozen=True)
 class TrainOptions:
-    """What else is asked of a training run, beside its config and data."""
+    """Options of a training run beside its config and data."""
 
     # {class of the data: class here, or None to leave it out}
     names: Mapping[str, str | None] = field(default_factory=dict)
@@ -111,7 +111,7 @@ def train(
         data: a data set, several that are combined, or images that are open already.
         folder: folder of the run.
         progress: receives messages, steps and epochs.
-        options: what else is asked for; None is nothing.
+        options: further options; None takes the defaults.
 
     Raises:
         FolderError: data that cannot be used.
@@ -137,7 +137,7 @@ def train(
 def _open_images(
     config: TrainConfig, data: Path | Sequence[Path] | ImageSet, options: TrainOptions
 ) -> ImageSet:
-    """Open what a run learns from, in the size and the colours of the run that it starts from."""
+    """Open the images of a run, in the size and the colours of the run that it starts from."""
     initial_run = None if options.start is None else run.load_best(options.start)[0]
     if options.resize and initial_run is None:
         raise ConfigError("--resize: needs --init, a run whose image size is taken")
@@ -153,7 +153,7 @@ def _open_images(
 def _memory_errors_explained(
     config: TrainConfig, images: ImageSet, device: torch.device
 ) -> Iterator[None]:
-    """Raise TrainingError, which says what would fit, for a step that is too large for memory."""
+    """Raise TrainingError, with advice, for a step that is too large for memory."""
     try:
         yield
     except RuntimeError as error:
@@ -169,7 +169,7 @@ def _memory_errors_explained(
 
 
 class _Training:
-    """Training run in its folder: what learns, and the epochs so far."""
+    """Training run in its folder: the learner, and the epochs so far."""
 
     def __init__(
         self,
@@ -200,7 +200,7 @@ class _Training:
         self.learner = Learner(model, task, self.metadata.normalisation, device, precision)
 
     def run(self, tensorboard: bool = False) -> Outcome:
-        """Train the epochs that are not done, and write what a finished run leaves."""
+        """Train the epochs that are not done, and write the files of a finished run."""
         config, learner = self.config, self.learner
         resumed, device = self._restore(), learner.device
         curves = None
@@ -317,7 +317,7 @@ class _Training:
         )
 
     def _save_epoch(self) -> None:
-        """Write the last epoch: the best weights first, then what the next epoch starts from."""
+        """Write the last epoch: the best weights first, then the state of the next epoch."""
         row = self.history[-1]
         is_best = best_epoch(self.history) is row
         if is_best:

@@ -40,7 +40,7 @@ def open_training_set(
         size: (H, W) to bring images to; None refuses those of several sizes.
 
     Raises:
-        FolderError: data that cannot be used together, or lack what the task needs.
+        FolderError: data that cannot be used together, or lack labels that the task needs.
         ConfigError: `data_weights` does not have a weight for each data set.
     """
     paths = [data] if isinstance(data, Path) else list(data)
@@ -62,7 +62,7 @@ def open_training_set(
 
 
 def training_warnings(config: TrainConfig, task: Task, images: ImageSet) -> list[str]:
-    """Warnings of what is not validated, and of epochs too short to learn much in."""
+    """Warnings of classes without validation, and of epochs too short to learn much in."""
     warnings = task.training_warnings(images)
     count, size = images.rows("train").size, config.images_a_step
     steps = len(epoch_batches(np.arange(count), size))

@@ -1,1 +1,1 @@
-"""How people move: the `Motion` protocol, the paper's model, the human one, and their skeleton."""
+"""Motion of people: the `Motion` protocol, the paper's model, the human one, and their skeleton."""

@@ -1,4 +1,4 @@
-"""What the echo needs to know of anything that moves."""
+"""Protocol of anything that moves and echoes."""
 
 from collections.abc import Callable
 from dataclasses import dataclass

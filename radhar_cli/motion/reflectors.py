@@ -1,4 +1,4 @@
-"""What stands in a room and is never quite still: furniture, a curtain, the mount of a fan."""
+"""Things in a room that are never quite still: furniture, a curtain, the mount of a fan."""
 
 from dataclasses import dataclass
 

@@ -54,7 +54,7 @@ PARENTS: tuple[int | None, ...] = tuple(
 def default_weight(height: float) -> float:
     """Weight (kg) of a person of this height (m) when none is given: 26 kg/m^2 of grown-ups.
 
-    Who is smaller than 1.5 m counts as a child, of 15.5 kg/m^2 at 1.1 m and 17 at 1.35 m, medians
+    A person below 1.5 m counts as a child, of 15.5 kg/m^2 at 1.1 m and 17 at 1.35 m, medians
     of the WHO's growth reference (de Onis et al., Bull. World Health Organ. 85 (2007) 660).
     """
     return float(np.interp(height, *CHILDREN)) * height**2

@@ -53,7 +53,7 @@ def machine_code(function: Routine, *called: tuple[Routine, Routine]) -> Routine
     """Compile a function, or take it from the cache beside its file or in the user's folder.
 
     Args:
-        function: what numba compiles.
+        function: function that numba compiles.
         called: (function that it calls, function whose code is compiled in its place). All are
             in one file, whose age tells whether the cache is up to date.
     """

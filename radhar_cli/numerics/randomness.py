@@ -23,7 +23,7 @@ def stream(seed: int, purpose: int, *key: int, name: str) -> np.random.Generator
     Args:
         seed: the data set's seed, at least 0.
         purpose: PERSON, SCENE, NOISE, SPLIT, TRAINING or ORDER.
-        key: what the stream belongs to, for example (class, index).
+        key: key that the stream belongs to, for example (class, index).
         name: the field or the noise, for example ``motion.range_m``.
     """
     spawn_key = (purpose, len(key), *key, zlib.crc32(name.encode()))

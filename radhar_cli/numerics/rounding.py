@@ -31,7 +31,6 @@ def show_beside(number: float, *others: float, digits: int = 6) -> str:
     0.0010000001 is "0.001", and 0.0010000001 beside 0.001 is "0.0010000001".
 
     Args:
-        number: What is written.
         others: Numbers beside which it is read; equal ones do not count.
         digits: Significant digits that are enough where nothing is alike.
     """

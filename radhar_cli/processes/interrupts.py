@@ -50,7 +50,7 @@ def complete(result: str) -> None:
     """Let no signal end the program from now on, nor one that came before and was swallowed.
 
     Args:
-        result: what is complete, for the line that says so if there was a signal.
+        result: result that is complete, for the line that names it if there was a signal.
     """
     _complete.append(result)
 

@@ -17,7 +17,7 @@ class Progress(Messages, Protocol):
         """Note that a part of the work begins.
 
         Args:
-            name: what the part does, in a word.
+            name: name of the part, in a word.
             total: number of its units.
             done: number of units that are finished already.
             unit: name of a unit, if it is not what this progress counts as a rule.

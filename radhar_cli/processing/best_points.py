@@ -126,7 +126,7 @@ class Angles:
 
 @dataclass(frozen=True)
 class EchoSpread:
-    """How a windowed Fourier transform spreads a steady echo over its bins.
+    """Spread of a steady echo over the bins of a windowed Fourier transform.
 
     Attributes:
         window: The window over the samples.
@@ -216,7 +216,7 @@ class EchoSpread:
 
 @dataclass(frozen=True, kw_only=True)
 class Finder:
-    """What finds the points of a board's frames.
+    """Detector of the points of a board's frames.
 
     Attributes:
         board: The board.
@@ -305,7 +305,7 @@ class Finder:
 
         Args:
             cell: Its range bin and Doppler bin.
-            rest: What is left of the spectrum [range, Doppler, virtual], from which it is taken.
+            rest: Rest of the spectrum [range, Doppler, virtual], from which it is taken.
             left: Powers of the cells that are still to be looked at, 0 of others [range, Doppler].
             least: Least power of a cell with a point [range, Doppler].
             noise: Mean noise power of the cell.
@@ -432,7 +432,6 @@ class CellTargets:
 
         Args:
             element: Samples [virtual] of the cell.
-            board: The board.
             angles: Rows and weights.
             least: Least power of a further target.
         """
@@ -454,7 +453,6 @@ def find_phase_steps(signal: Complex, board: Board, angles: Angles, least: float
 
     Args:
         signal: Samples [element] of the row.
-        board: The board.
         angles: Rows and weights.
         least: Least power of a further target.
     """

@@ -25,7 +25,7 @@ class DopplerPower:
 
     Attributes:
         compute: yields blocks of frames [frames, N] in the order of time.
-        bins: which of the N Doppler bins the map shows.
+        bins: the bins of N that the map shows.
         exponent: binary exponent of the unit of the signal.
         frequency: axis of the Doppler bins that are shown, Hz.
         time: axis of the middles of the frames, s.

@@ -87,7 +87,6 @@ def doppler_spectrum(x: Complex, board: Board, window: Float) -> Complex:
 
     Args:
         x: Range spectrum [frame, loop, virtual, range].
-        board: The board.
         window: Window over the loops [loop].
     """
     import scipy.fft  # slow to import
@@ -103,7 +102,6 @@ def separate_transmitters(x: Complex, board: Board) -> Complex:
 
     Args:
         x: Spectrum of the chirps as sent [.., Doppler, virtual, range]; it is overwritten.
-        board: The board.
     """
     if board.bpm is None:
         return x
@@ -144,7 +142,7 @@ class FrameAxis:
     """Axis of a frame map, whose values follow from the board.
 
     Attributes:
-        quantity: what the axis shows.
+        quantity: quantity that the axis shows.
         unit: unit of its values.
         values_of: values of every row or column of a board's map, even, lowest first.
         cell_of: width of a cell of a board's map, where it may have a single one; None elsewhere.

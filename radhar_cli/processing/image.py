@@ -145,7 +145,6 @@ def decibels(power: Float, dynamic_range_db: float, reference: float | None = No
 
     Args:
         power: power, in the unit of `reference`; zeros are at -dynamic_range_db.
-        dynamic_range_db: range of the decibels.
         reference: power of 0 dB; None for the largest of the map.
     """
     reference = largest_power(power) if reference is None else reference

@@ -290,12 +290,12 @@ class Look:
         if reach == 0 and self.count == pulses[-1] - pulses[0] + 1:
             return following(self.count)
         x = np.zeros((self.fast.rank, self.count), complex)
-        held, stop = np.empty((len(x), 0), complex), int(pulses[-1]) + reach + 1
+        buffer, stop = np.empty((len(x), 0), complex), int(pulses[-1]) + reach + 1
         for first in range(0, stop, BLOCK):
-            held = np.concatenate([held, following(min(BLOCK, stop - first))], axis=1)
-            begin = min(first + BLOCK, stop) - held.shape[1]
-            columns = slice(*np.searchsorted(pulses, [begin, begin + held.shape[1] - reach]))
+            buffer = np.concatenate([buffer, following(min(BLOCK, stop - first))], axis=1)
+            begin = min(first + BLOCK, stop) - buffer.shape[1]
+            columns = slice(*np.searchsorted(pulses, [begin, begin + buffer.shape[1] - reach]))
             for lag, tap in enumerate(self.taps):
-                x[:, columns] += tap * held[:, pulses[columns] - begin + lag]
-            held = held[:, held.shape[1] - reach :]
+                x[:, columns] += tap * buffer[:, pulses[columns] - begin + lag]
+            buffer = buffer[:, buffer.shape[1] - reach :]
         return x

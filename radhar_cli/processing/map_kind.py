@@ -15,7 +15,7 @@ class Transform(StrEnum):
 
 @dataclass(frozen=True)
 class Treatment:
-    """What is done to a signal before its Doppler-time maps are made.
+    """Treatment of a signal before its Doppler-time maps are made.
 
     Attributes:
         compensated: whether the bulk Doppler of the torso is taken out.
@@ -30,7 +30,7 @@ class Treatment:
 
     @property
     def suffix(self) -> str:
-        """What it adds to the name of a signal or map, such as _compensated_denoised."""
+        """Suffix to the name of a signal or map, such as _compensated_denoised."""
         return "".join(f"_{word}" for word in self._words)
 
     @property

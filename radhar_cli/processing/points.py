@@ -171,7 +171,6 @@ def _angles(
 
     Args:
         symbols: Samples [n, virtual] of the detected cells.
-        board: The board.
         detection: Detection settings: least height of a second peak, most points.
         integer: Whether heights are whole numbers.
 

@@ -17,7 +17,6 @@ def range_compression(s: Complex, waveform: Waveform, bins: slice = slice(None))
 
     Args:
         s: Beat matrix [N_ADC, M].
-        waveform: The radar.
         bins: Range bins that are wanted, among those that are kept.
 
     Returns:

@@ -16,7 +16,7 @@ FLOAT32_DECADES = 30  # of powers that float32 holds, and their quotients
 
 
 class Reference(Enum):
-    """What of an image its grey levels are relative to.
+    """Power that the grey levels of an image are relative to.
 
     PEAK: its largest power, which is level 255.
     NOISE: its noise floor, which is two fifths of the range above level 0, as a canceller lowers
@@ -35,7 +35,7 @@ class DecibelScale:
 
     Attributes:
         range_db: range of the levels, dB.
-        reference: what the levels are relative to; a number is the power of a cell of the map that
+        reference: reference of the levels; a number is the power of a cell of the map that
             is level 255, the same for all images, in dB for unit transmit power.
     """
 

@@ -92,7 +92,6 @@ class Signal:
         """Signal after a canceller, stretch by stretch; those too short for it are left out.
 
         Args:
-            canceller: The canceller.
             spans: Pulses of each row that count, of a signal without gaps; others become 0.
         """
         long = self.stretches(canceller.lost + 1)

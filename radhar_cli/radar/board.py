@@ -134,9 +134,9 @@ _PREFIXES = "iwr", "awr", "xwr"  # industrial, automotive and either: of the sam
 
 
 def plain_name(name: str) -> str:
-    """Name of a board or its profile without what does not matter in it.
+    """Name of a board or its profile in plain form.
 
-    Capitals, spaces, hyphens, underscores, BOOST, EVM, MOD and AWR or xWR for IWR do not.
+    Capitals, spaces, hyphens, underscores, BOOST, EVM, MOD and AWR or xWR for IWR do not matter.
     """
     plain = re.sub("boost|evm|mod$|[-_ ]", "", name.lower()).replace("iskods", "ods")
     return f"i{plain[1:]}" if plain.startswith(_PREFIXES) else plain

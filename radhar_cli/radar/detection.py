@@ -33,7 +33,7 @@ NO_CFAR = Cfar(CASO, 8, 4, False, 15.0)  # along range, where nothing sets it
 
 
 class Demo(NamedTuple):
-    """What tells the firmware of one out-of-box demo from another's.
+    """Traits in which the firmware of one out-of-box demo differs from another's.
 
     Attributes:
         max_points: Most points of a frame.
@@ -70,7 +70,7 @@ class Detection:
         elevation_deg: Limits of elevation.
         range_m: Limits of range.
         doppler_mps: Limits of radial speed, positive receding.
-        demo: What the firmware does that no line of the .cfg sets.
+        demo: Settings of the firmware that no line of the .cfg has.
     """
 
     along_range: Cfar = NO_CFAR

@@ -92,8 +92,8 @@ def frame_of(start: Vector, end: Vector, beside: Vector, softness: float) -> Fra
     Left fades, as v/sqrt(|v|^2 + softness^2), where that direction is along the ellipsoid.
 
     Args:
-        start: Where the ellipsoid begins, m.
-        end: Where it ends, m.
+        start: Beginning of the ellipsoid, m.
+        end: End of the ellipsoid, m.
         beside: Direction beside it, of any length.
         softness: Length of `beside` across the axis below which left fades.
     """
@@ -307,7 +307,7 @@ def look_from(frames: Float, place: Vector, m: int | slice) -> None:
 
     Args:
         frames: Frames [FRAME_ROWS, ...] of the ellipsoids.
-        place: Where they are seen from, m.
+        place: Place from which they are seen, m.
         m: Instants.
     """
     x, y, z = _vector(frames[CENTRE:], m)

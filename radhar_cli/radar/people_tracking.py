@@ -35,12 +35,12 @@ class Cosines:
 
     @property
     def step(self) -> float:
-        """Distance from one to the next."""
+        """Difference of a cosine and the next."""
         return -self.first * self.step_deg / self.half_view_deg
 
     @cached_property
     def values(self) -> Float:
-        """All of them."""
+        """All cosines of the grid, ascending."""
         count = floor(2 * self.half_view_deg / self.step_deg + _ROUNDING) + 1
         values: Float = self.first + np.arange(count) * self.step
         return values
@@ -78,7 +78,7 @@ class TwoPassCfar:
         return bins - sum(self.skip_range) > 2 * (self.window[0] + self.guard[0])
 
     def mirrors_within(self, bins: int) -> bool:
-        """Whether what stands for the far side at the last of so many bins lies in the map.
+        """Whether the mirror of the far side, at the last of so many bins, lies in the map.
 
         The firmware takes bins that are `skip_range[1]` nearer.
         """
@@ -125,7 +125,7 @@ class Zoom:
 
 @dataclass(frozen=True)
 class StaticSearch:
-    """Points of what stands still: a beamformer over the means of a frame.
+    """Points of static echoes: a beamformer over the means of a frame.
 
     Attributes:
         cfar: Its CFAR, without a pass along angle; ranges that are left out are the moving points'.
@@ -166,7 +166,7 @@ class PeopleTracking:
         refinement: How a cell of the map becomes a direction: an azimuth map and a search over
             elevation, or an azimuth-elevation map and a zoom.
         dynamic: CFAR of the map.
-        static: Search for what stands still; None where it is off.
+        static: Search for static echoes; None where it is off.
         fine_motion: Frames of slow movements; None where they are off.
     """
 

@@ -64,7 +64,6 @@ def field_behind_person(
     Args:
         p: Positions [3, I, M] to which the legs lead, m.
         antenna: Position of the antenna, m.
-        boxes: Boxes of the person.
         wavelength: Wavelength of the carrier, m.
     """
     dimming = np.zeros(p.shape[1:])  # sum of A^-4 - 1
@@ -141,7 +140,7 @@ def _is_near(legs: Legs, distance: Float, spread: Float, wavelength: float) -> B
 
 
 def _share_beyond(distance: Float) -> Float:
-    """Share of a shadow that is left at a distance (m) from who throws it."""
+    """Share of a shadow that is left at a distance (m) from the person."""
     near = distance < BEYOND_M + WIDTHS * BEYOND_WIDTH_M
     share = np.ones(distance.shape)
     share[near] = 1 / (1 + np.exp(np.minimum((BEYOND_M - distance[near]) / BEYOND_WIDTH_M, 700)))

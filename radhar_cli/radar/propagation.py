@@ -16,7 +16,7 @@ Remember: TypeAlias = Callable[[object, Callable[[], Float]], Float]
 
 
 def compute_anew(_: object, compute: Callable[[], Float]) -> Float:
-    """Compute what has a name, without remembering it."""
+    """Compute a named result, without remembering it."""
     return compute()
 
 

@@ -51,7 +51,6 @@ def refract(
     Args:
         p: Positions [3, I, M], m.
         antenna: Position of the antenna, m.
-        wall: The wall.
         straight: `crossing` of the same rays.
     """
     entered, exited = faces_met(p, antenna, wall)

@@ -39,7 +39,6 @@ def pass_wall(
     Args:
         p: Positions [3, I, M] of the scatterers, m.
         antennas: Transmitter and receiver.
-        wall: The wall.
         fc: Frequency of the loss, Hz.
         delay: Delays [I, M], s, which are changed.
         amplitude: Amplitudes [I, M], which are changed.
@@ -58,7 +57,6 @@ def pass_wall_on_legs(
 
     Args:
         legs: Both legs: where each ends [3, I, M] (m), as if no face turned it, and its antenna.
-        wall: The wall.
         fc: Frequency of the loss, Hz.
         delay: Delays [I, M], s, which are changed.
         amplitude: Amplitudes [I, M], which are changed.

@@ -97,8 +97,6 @@ def aspect_of(motion: Motion, antennas: Antennas, t: Float) -> Float:
     to their left.
 
     Args:
-        motion: motion of the person.
-        antennas: antennas of the radar.
         t: times [M], s.
 
     Returns:

@@ -1,4 +1,4 @@
-"""When the movements of a person begin (`timing.onset`), and what follows of them."""
+"""Onset of the movements of a person (`timing.onset`), and times that follow from it."""
 
 from collections.abc import Sequence
 from math import inf
@@ -22,7 +22,7 @@ LONGEST_S = 5.0  # of a walk, half way of which people trip
 
 
 class Bout(NamedTuple):
-    """When what lasts is under way.
+    """Time during which a lasting movement is under way.
 
     Attributes:
         begin: its beginning, s; 0 where it is under way at 0 s.
@@ -41,13 +41,13 @@ def onset_at(person: Person, limits: Onsets) -> float:
 
 
 def bout_onset(person: Person) -> float:
-    """When a bout as long as the recording begins, s; below 0 it ends within the recording."""
+    """Compute the onset of a bout as long as the recording, s; below 0, the bout ends within it."""
     seconds = person.seconds
     return onset_at(person, limits_of_movement(seconds, seconds, person.timing.visible))
 
 
 def bout_of(person: Person) -> Bout:
-    """When what a person does all the time is under way, steadily where it is so at 0 s."""
+    """Return the bout of an activity without an end, steady where it is under way at 0 s."""
     onset = bout_onset(person)
     if onset > 0:
         return Bout(onset, inf, True)
@@ -55,12 +55,12 @@ def bout_of(person: Person) -> Bout:
 
 
 def movement_onset(person: Person, duration: float) -> float:
-    """When a single movement of `duration` s begins, s."""
+    """Compute the onset of a single movement of `duration` s, s."""
     return onset_at(person, limits_of_movement(duration, person.seconds, person.timing.visible))
 
 
 def rise_onset(person: Person, duration: float) -> float:
-    """When rising for `duration` s before a walk begins, s."""
+    """Compute the beginning of a rise of `duration` s before a walk, s."""
     if person.timing.walk_start_s is not None:
         return float(person.timing.walk_start_s - duration)
     limits = limits_of_rise(duration, person.seconds, person.timing.visible)
@@ -68,12 +68,12 @@ def rise_onset(person: Person, duration: float) -> float:
 
 
 def stop_onset(person: Person, duration: float) -> float:
-    """When a movement of `duration` s after a walk begins, s."""
+    """Compute the beginning of a movement of `duration` s after a walk, s."""
     return onset_at(person, limits_of_stop(duration, person.seconds, person.timing.visible))
 
 
 def sequence_onset(person: Person, steps: Sequence[SequenceStep], motion: HumanMotion) -> float:
-    """When the sequence of a person's class begins, s."""
+    """Compute the onset of the sequence of a person's class, s."""
     parts = list[Stretch]()
     for step, (part, _) in zip(steps, motion.parts, strict=False):
         kind = MOVEMENTS[step.name]

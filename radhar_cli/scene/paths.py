@@ -46,7 +46,7 @@ class OwnedPaths(NamedTuple):
 
     Attributes:
         source: the paths.
-        person: number of the person; 0 is the sample's own, -1 what stands in the room.
+        person: number of the person; 0 is the sample's own, -1 the things in the room.
         legs: ways of the transmitter's leg and of the receiver's leg.
     """
 
@@ -56,7 +56,7 @@ class OwnedPaths(NamedTuple):
 
 
 class Link(NamedTuple):
-    """What the paths of one channel run through.
+    """Antennas, wall and waveform of the paths of one channel.
 
     Attributes:
         antennas: antennas between which they run.
@@ -89,9 +89,9 @@ def make_path_sources(
     link: Link,
     room: Reflectors | None = None,
 ) -> list[OwnedPaths]:
-    """Make the paths of everything in a scene: of who moves, and of what stands in the room.
+    """Make the paths of everything in a scene: of people, and of the things in the room.
 
-    Where that is nothing, as in an empty scene without reflectors, there is a path of no power.
+    Where there are none, as in an empty scene without reflectors, there is a path of no power.
     """
     sources = [] if scene.is_empty else trace_people(scene, motions, link)
     if room is not None:
@@ -110,7 +110,6 @@ def trace_people(
     there again, unshadowed, unless not `mirrored`.
 
     Args:
-        scene: what is simulated.
         motions: motions of its people, or of parts of one.
         link: antennas, wall and waveform of a channel.
         mirrored: whether people are there again by way of the room's faces.

@@ -58,13 +58,13 @@ _SWAY_HZ = tuple(f * (0.9 + 0.2 * (k * GOLDEN % 1)) for k, f in enumerate(SWAY_H
 
 
 class _Plan(NamedTuple):
-    """What a person does, one movement after the other.
+    """Movements of a person, one after the other.
 
     Attributes:
         movements: movements in their order.
         pauses: pause before each, s; those that are not given are 0.
-        begin: when the first begins, s.
-        onset: when that begins which the class is named by, s; None: with the first movement.
+        begin: beginning of the first, s.
+        onset: beginning of the movement that names the class, s; None: that of the first.
     """
 
     movements: tuple[Movement, ...]
@@ -194,7 +194,7 @@ def _add_steps(person: Person, movements: tuple[Movement, ...]) -> tuple[Movemen
 
 
 def _time_of_rest(movements: Iterable[Movement], begin: float) -> float:
-    """When movements that follow each other from `begin` (s) on have come to rest, s."""
+    """Return the time at which a chain of movements from `begin` (s) on comes to rest, s."""
     for movement in movements:
         begin = movement.part(Physique(1.7), begin, begin).end
     return begin

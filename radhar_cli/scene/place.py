@@ -1,10 +1,10 @@
-"""Where a person starts, so that they are where `motion.place` says at one instant.
+"""Start of a person, so that they are where `motion.place` says at one instant.
 
-Who stays in place is there. A course is laid through the place at one of the instants at which all
-of it stays within the zone that radar, wall and room leave. It is chosen among those, not by trying
-again: whether a scene is possible would depend on what people do, and where they are would tell it.
-As `motion.place.instant` is drawn, far places are at the far ends of courses: ranges at any instant
-then vary about as much as places do, whoever walks.
+A person who stays in place is there. A course is laid through the place at one of the instants at
+which all of it stays within the zone that radar, wall and room leave. It is chosen among those, not
+by trying again: whether a scene is possible would depend on what people do, and where they are
+would tell it. As `motion.place.instant` is drawn, far places are at the far ends of courses: ranges
+at any instant then vary about as much as places do, for any walk.
 """
 
 from dataclasses import dataclass
@@ -28,7 +28,7 @@ LOOKS_AHEAD = 0.5  # least horizontal share of the boresight of a radar that has
 
 @dataclass(frozen=True)
 class Zone:
-    """Where a body may be, as radar, wall and room leave it.
+    """Region in which a body may be, as radar, wall and room leave it.
 
     Attributes:
         antennas: antennas of the radar.
@@ -46,7 +46,7 @@ class Zone:
     y: tuple[float, float]
 
     def miss(self, joints: Float, torso: Float, starts: Float) -> Float:
-        """How far bodies are out of the zone at worst [K], m; 0 or less where they are inside.
+        """Compute the largest distance of bodies out of the zone [K], m; 0 or less inside.
 
         Args:
             joints: joints of a body that starts at the origin [2, I, M], m.
@@ -70,7 +70,6 @@ def zone_of(scene: Scene, place: tuple[float, float]) -> Zone:
     """Zone that the radar of a scene leaves for people, behind its wall and within its room.
 
     Args:
-        scene: the scene.
         place: place of a person (m), before which each of several radars is.
     """
     wall, box, x, y = wall_of(scene), scene.room.make_box(), (-inf, inf), (-inf, inf)
@@ -91,13 +90,12 @@ def zone_of(scene: Scene, place: tuple[float, float]) -> Zone:
 def distance_ahead(
     torso: Float, antennas: Antennas, looks_at: tuple[float, float] | None = None
 ) -> Float:
-    """How far a torso [2 or 3, ...] is before the hindmost antenna [...], m.
+    """Compute the distance of a torso [2 or 3, ...] before the hindmost antenna [...], m.
 
     It is infinite where a radar looks down. Antennas without a pattern look along x.
 
     Args:
         torso: the torso, m.
-        antennas: the antennas.
         looks_at: place on the ground (m) that antennas without a pattern look at instead.
     """
     forward = np.array((1.0, 0.0))
@@ -117,8 +115,7 @@ def start_of(person: Person, motion: Motion) -> tuple[float, float]:
     """Range and cross-range (m) at which a person starts.
 
     Args:
-        person: person of a scene.
-        motion: what they do, if they start at the origin.
+        motion: their motion, if they start at the origin.
     """
     x, y = person.place
     starts = person.motion.range_m is not None

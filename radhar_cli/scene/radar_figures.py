@@ -1,4 +1,4 @@
-"""What a radar resolves, and how far: the figures that data sheets have, by its config."""
+"""Resolutions and limits of a radar by its config, the figures that data sheets have."""
 
 from dataclasses import dataclass
 
@@ -105,7 +105,7 @@ def beam_width_deg(places: Float) -> float | None:
 
 
 def describe_figures(figures: RadarFigures) -> str:
-    """Say the figures of a radar in a line."""
+    """Describe the figures of a radar in a line."""
     parts = [f"{figures.rate_hz:.5g} {'frames' if figures.has_frames else 'pulses'} a second"]
     if figures.range_step_m is not None and figures.last_range_m is not None:
         step_cm = 100 * figures.range_step_m

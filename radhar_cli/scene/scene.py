@@ -161,10 +161,10 @@ class Person:
 
     Attributes:
         scene: the scene they are in.
-        activity: what they do.
+        activity: activity of the person.
         config: config whose `subject`, `motion`, `timing` and `classes` are theirs.
         number: 0 for the sample's main person, else their place in `people`, from 1 on.
-        held: what was made of them and is needed again, by name.
+        held: objects made of them that are needed again, by name.
     """
 
     scene: "Scene"
@@ -180,12 +180,12 @@ class Person:
 
     @property
     def motion(self) -> MotionConfig[float]:
-        """How the person moves."""
+        """Motion of the person."""
         return cast(MotionConfig[float], self.config.motion)
 
     @property
     def timing(self) -> TimingConfig[float]:
-        """When the person moves."""
+        """Timing of the person's motion."""
         return cast(TimingConfig[float], self.config.timing)
 
     @property
@@ -238,10 +238,9 @@ class Scene:
     Attributes:
         config: config with every number of SCENE_KEYS fixed. Written to YAML and simulated again
             with the same activity and index, it gives the same recording.
-        activity: what the sample's main person does.
         index: number of the sample within its class; names its noise, with the seed and the class.
         subject: number of the person, or None where every sample is a person of its own.
-        attempt: how often the scene was redrawn (`on_invalid: redraw`).
+        attempt: number of times the scene was redrawn (`on_invalid: redraw`).
     """
 
     config: Config
@@ -273,7 +272,7 @@ class Scene:
 
     @property
     def room(self) -> RoomConfig[float]:
-        """What stands in the room, and its faces."""
+        """Objects in the room, and its faces."""
         return cast(RoomConfig[float], self.config.room)
 
     @property
@@ -305,7 +304,7 @@ class Scene:
     def people(self) -> tuple[Person, ...]:
         """Everybody in the scene, the sample's main person first.
 
-        In an empty scene it is who would stand there alone, who makes no echo: an SNR refers to
+        In an empty scene it is a person who would stand there, without an echo: an SNR refers to
         theirs, and gates follow their place.
         """
         scene = replace(self)  # a twin: with the scene itself, motions would be freed late
@@ -327,7 +326,7 @@ class Scene:
         """Random stream of the noise of the scene's radar, of several its own.
 
         Args:
-            name: what the noise is.
+            name: name of the noise.
             channel: name of the receive channel; "" for the antennas of the config.
         """
         name = f"{name} channel {channel}" if channel else name
@@ -336,7 +335,7 @@ class Scene:
         return self.surroundings_stream(name)
 
     def surroundings_stream(self, name: str) -> np.random.Generator:
-        """Random stream of what moves besides people, the same for all radars of the scene."""
+        """Random stream of moving things besides people, the same for all radars of the scene."""
         return stream(self.config.seed, NOISE, self.activity.index, self.index, name=name)
 
 
@@ -387,7 +386,6 @@ def _draw_config(config: Config, activity: Activity, draw: Draw, subject: int | 
 
     Args:
         config: config in which the person's numbers are at the top level.
-        activity: what the person does.
         draw: random choices, or the middle of everything.
         subject: number of the person, or None without named persons.
     """
@@ -442,7 +440,7 @@ def _with_stream(fixed: Config, config: Config, draw: Draw) -> Config:
 
 
 def draw_people(config: Config, draws: Sequence[Draw]) -> tuple[PersonConfig, ...]:
-    """Draw `people`, with nothing left to draw; who is not there has a share of 0.
+    """Draw `people`, with nothing left to draw; an absent person has a share of 0.
 
     Args:
         config: config of the data set.

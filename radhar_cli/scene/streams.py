@@ -41,7 +41,7 @@ class StreamMotion(HumanMotion):
 
 
 class Situation(NamedTuple):
-    """Where and when a bout may begin."""
+    """Place and time at which a bout may begin."""
 
     place: Place
     time: float  # s
@@ -189,7 +189,7 @@ class _Planner:
         return PlannedBout(turn, tuple(placed), Situation(end_place, end), outside)
 
     def _outside(self, motion: HumanMotion, begin: float, end: float) -> float:
-        """How far the torso leaves the zone from `begin` to `end` (s), m; 0 where it stays."""
+        """Compute the torso's distance out of the zone from `begin` to `end` (s), m; 0 inside."""
         end = max(begin, min(end, self.person.seconds)) if end == inf else end
         t = np.append(np.arange(begin, end, CHECK_S), end)
         x, y = motion.torso(t)[:2, 0]

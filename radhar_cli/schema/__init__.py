@@ -1,1 +1,1 @@
-"""What a key of a config is: a number or its law, a section, and what is said of it."""
+"""Keys of a config: a number or its law, a section, and their annotations."""

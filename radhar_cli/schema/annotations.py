@@ -60,7 +60,7 @@ class Paper:
 
 
 class Presence(Enum):
-    """What a key has to say for another one to act, where no single value is meant."""
+    """Condition on another key that holds for more than single values."""
 
     GIVEN = "one"
     ABOVE_ZERO = "a number above 0"
@@ -144,12 +144,12 @@ class Unless:
         return not value_at(self.key)
 
     def entry(self, value_at: ValueAt) -> str:
-        """What is in the way."""
+        """Return the words for the property that holds."""
         return self.words
 
     @property
     def right(self) -> str:
-        """What it should be."""
+        """Words for the remedy: none of it."""
         return "none"
 
 
@@ -170,7 +170,7 @@ class NeedsNullKey:
 
     @property
     def right(self) -> str:
-        """What the other key would be, in words."""
+        """Value that the other key should have, in words."""
         return f"{self.key}: null"
 
 
@@ -195,12 +195,12 @@ class OfRadar:
         return value_at("radar.kind") in self.kinds
 
     def entry(self, value_at: ValueAt) -> str:
-        """What tells the kind of the radar, as YAML."""
+        """Return the name of the radar's kind."""
         return str(value_at("radar.named"))
 
     @property
     def right(self) -> str:
-        """What would tell one of the kinds, in words."""
+        """Keys that choose one of the kinds, in words."""
         waveforms = [kind for kind in self.kinds if kind not in _KEYS_OF_FRAMES]
         words = [f"radar.waveform: {' or '.join(waveforms)}"] if waveforms else []
         words += [_KEYS_OF_FRAMES[kind] for kind in self.kinds if kind in _KEYS_OF_FRAMES]

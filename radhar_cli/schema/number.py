@@ -36,7 +36,7 @@ def value_error(right: str) -> PydanticCustomError:
     """Make the error of a value that a validator refuses.
 
     Args:
-        right: says what would be right, "should be ..."; braces in it are kept.
+        right: description of what would be right, "should be ..."; braces in it are kept.
     """
     return PydanticCustomError("wrong", "{what}", {"what": right})
 
@@ -351,7 +351,7 @@ class Bounds:
 
     Attributes:
         unit: unit that messages and docs/reference/limits.md give.
-        wording: what messages say instead of "from low to high unit".
+        wording: wording of messages instead of "from low to high unit".
         open_low: whether `low` itself is refused, too.
     """
 

@@ -72,7 +72,7 @@ class Section(BaseModel):
 
     @classmethod
     def descriptions(cls) -> dict[str, str]:
-        """What stands under each field in the source; Pydantic would read it at every start."""
+        """Read the texts below the fields in the source, as Pydantic would do at every start."""
         texts: dict[str, str] = {}
         for kind in reversed(cls.__mro__):
             if kind is not Section and issubclass(kind, Section):

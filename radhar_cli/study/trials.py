@@ -64,7 +64,6 @@ def try_settings(
     """Measure settings in turn, each within its share of the time, and yield what came of each.
 
     Args:
-        settings: the settings.
         measure: yields results of a setting, of which the last counts.
         budget: time for all of them.
         progress: is told of each that is done.

@@ -75,10 +75,9 @@ def write_clips(
 
     Args:
         out: Recording to write.
-        clips: The clips.
         frame_s: Time from frame to frame, s.
         sources: Files that they were read from.
-        findings: What was left out, in words.
+        findings: Damage and losses, in words.
 
     Raises:
         CaptureError: there is nothing, or numbers are no measurements.

@@ -1,8 +1,8 @@
 """The Glasgow set: six activities of people in front of an FMCW radar at 5.8 GHz.
 
 Files are named `KPppAaaRrr.dat`: activity K, person, activity once more, repetition; case and
-zeros vary. The same number in two campaigns counts as one person, who is then in one part of a
-split, whoever it was.
+zeros vary. The same number in two campaigns counts as one person, even if
+there were two, and is in one part of a split.
 """
 
 from collections.abc import Iterator

@@ -11,7 +11,7 @@ from radhar_cli.dataset.image_file import SUFFIXES
 
 
 def find_manifest(folder: Path) -> Path:
-    """Return what holds the images: a table or an .npz in a folder of such, else the folder."""
+    """Return the source of the images: a table or an .npz in a folder of such, else the folder."""
     if folder.is_dir():
         inside = sorted(path for path in folder.iterdir() if path.is_file())
         packed = [path for path in inside if path.suffix.lower() not in {*SUFFIXES, ".parquet"}]

@@ -90,10 +90,10 @@ def list_takes(folder: Path, settings: PointTableSettings) -> Iterator[Take]:
 
 def _import(path: Path, label: str | None, settings: PointTableSettings, out: Path) -> None:
     """Import a dump of a board's data port, or a replay file."""
-    said = PointSettings(
+    point_settings = PointSettings(
         frame_s=settings.frame_s, label=_require_label(path, label), person=settings.person
     )
-    import_points([path], out, PointHeader(said))
+    import_points([path], out, PointHeader(point_settings))
 
 
 def _require_label(path: Path, label: str | None) -> str:

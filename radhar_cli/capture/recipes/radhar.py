@@ -1,8 +1,8 @@
 """RadHAR: five activities in front of an IWR1443, messages of a ROS driver as text.
 
 A message is a point, in ROS's axes (ahead, left, up); a frame begins where `point_id` begins again.
-Frames often come in pairs, 30 a second on average. Velocities are receding, as TI's. Nobody says
-who it is.
+Frames often come in pairs, 30 a second on average. Velocities are receding, as TI's. The
+persons have no names.
 """
 
 import re

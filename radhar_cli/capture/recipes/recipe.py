@@ -37,10 +37,10 @@ class Take(NamedTuple):
 
 @dataclass(frozen=True)
 class SetRecipe:
-    """How a published set becomes a data set.
+    """Steps from a published set to a data set.
 
     Attributes:
-        source: Who published it, and where.
+        source: Publisher and address of the set.
         licence: As the Hugging Face Hub calls it; "" where none is stated.
         holds: Size, classes and persons, in words.
         tested: Data that the recipe was tried on, in words.
@@ -74,7 +74,7 @@ CLOUDS: dict[str, Any] = {
 
 
 class MatchedFile(NamedTuple):
-    """A file of a folder, and what its path matched."""
+    """A file of a folder, and the match of its path."""
 
     path: Path
     inner: str  # path from the folder on, with slashes
@@ -87,7 +87,6 @@ def find_files(folder: Path, pattern: str) -> Iterator[MatchedFile]:
     Case does not matter. No link is followed out of the folder.
 
     Args:
-        folder: The folder.
         pattern: Regular expression of the last parts of a path, with slashes.
 
     Raises:

@@ -23,7 +23,7 @@ MAX_COMMANDS = 20  # of a .cfg, in a warning
 
 
 def board_warnings(config: Request) -> Iterator[str]:
-    """Say which commands are not known, which window is too long, and what a .cfg does not do."""
+    """Warn of unknown commands, of too long windows, and of lines of a .cfg without effect."""
     radar = config.radar
     if isinstance(radar, BoardRadar):
         yield from _unknown_commands(radar)
@@ -34,7 +34,7 @@ def board_warnings(config: Request) -> Iterator[str]:
 
 
 def _unknown_commands(radar: BoardRadar) -> Iterator[str]:
-    """Say which commands of a .cfg are not known."""
+    """Warn of commands of a .cfg that are not known."""
     header = radar.header
     if header.unknown:
         verb = "is not known and has" if len(header.unknown) == 1 else "are not known and have"
@@ -44,7 +44,7 @@ def _unknown_commands(radar: BoardRadar) -> Iterator[str]:
 
 
 def _window_warnings(config: Request, radar: ArrayRadar) -> Iterator[str]:
-    """Say that a window that is longer than the chirps of a frame is no longer than these."""
+    """Warn of a window longer than the chirps of a frame, beyond which it has no effect."""
     frame_s = radar.timing.loops * radar.timing.loop_s
     window_s = config.processing.window_s if _gives_window(config) else None
     if window_s is not None and window_s > frame_s:
@@ -55,7 +55,7 @@ def _window_warnings(config: Request, radar: ArrayRadar) -> Iterator[str]:
 
 
 def _header_warnings(config: Request, radar: BoardRadar) -> Iterator[str]:
-    """Say which lines of a .cfg have no effect, or another one than on the board."""
+    """Warn of lines of a .cfg that have no effect, or another one than on the board."""
     header = radar.header
     if header.not_simulated:
         names = ", ".join(header.not_simulated)
@@ -78,7 +78,7 @@ def _header_warnings(config: Request, radar: BoardRadar) -> Iterator[str]:
 
 
 def _elements_warnings(config: Request, radar: BoardRadar) -> Iterator[str]:
-    """Say that the file has other elements than the board, which count; in one line."""
+    """Warn, in one line, that the elements of the file are not those of the board."""
     from radhar_cli.readers.ti.ti_elements import (  # of boards alone
         compare_elements,
         fitting_devices,
@@ -114,7 +114,7 @@ def _counts_people(chain: Chain, header: "BoardHeader") -> bool:
 
 
 def _describe_chain(chain: Chain, radar: BoardRadar) -> str:
-    """Say which chain finds the points where the config names none, and why it is that one."""
+    """Describe the chain that finds the points by default, with the reason for it."""
     header = radar.header
     if chain != "best":
         return f"cloud.chain: {chain}, the firmware whose commands radar.cfg has"
@@ -133,7 +133,7 @@ def _gives_window(config: Request) -> bool:
 
 
 def angle_warnings(config: Request) -> Iterator[str]:
-    """Say that elements by hand are so far apart that angles fold."""
+    """Warn that elements by hand are so far apart that angles fold."""
     radar = config.radar
     if not isinstance(radar, ArrayRadar) or getattr(radar, "array", None) is None:
         return

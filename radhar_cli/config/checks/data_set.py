@@ -28,7 +28,7 @@ from radhar_cli.schema.section import Problem
 
 
 def problems_of_recordings(c: Request) -> Iterator[Problem]:
-    """Find what is wrong in a request for recordings, whatever they are."""
+    """Find the problems of a request for recordings, whatever they are."""
     sections = MeasuredRequest.model_fields
     of_points = c.maps == ("points",)  # which a board has found, whatever `radar` is
     yield from (
@@ -39,7 +39,7 @@ def problems_of_recordings(c: Request) -> Iterator[Problem]:
 
 
 def problems_of_processing(c: Request) -> Iterator[Problem]:
-    """Find what does not go together where a recording is processed.
+    """Find the problems of a request to process a recording.
 
     Windows are shortened, or refused, where its gaps are known.
     """
@@ -49,7 +49,7 @@ def problems_of_processing(c: Request) -> Iterator[Problem]:
 
 
 def problems(c: Request) -> Iterator[Problem]:
-    """Find what does not go together in a request with its defaults filled in."""
+    """Find the problems of a request with its defaults filled in."""
     if not c.chosen_activities:
         yield Problem("classes", {}, "should have files of each class with motion.model: file")
         return
@@ -83,7 +83,7 @@ def problems(c: Request) -> Iterator[Problem]:
 
 
 def _problems_of_several(c: Request) -> Iterator[Problem]:
-    """Find what is wrong with the other radars of the same scenes."""
+    """Find the problems of the other radars of the same scenes."""
     if c.radars is not None:
         right = "should be read from a file, by load_radars, which makes a config of each radar"
         yield Problem("radars", [*c.radars], right)
@@ -104,7 +104,7 @@ def _problems_of_several(c: Request) -> Iterator[Problem]:
 
 
 def measured_problems(c: MeasuredRequest) -> Iterator[Problem]:
-    """Find what does not go together in a data set of recordings."""
+    """Find the problems of a data set of recordings."""
     if not c.recordings.counts:
         right = "should be at most as long as the longest part of a recording"
         yield Problem("recordings.window_s", c.recordings.window_s, right)
@@ -121,7 +121,7 @@ def measured_problems(c: MeasuredRequest) -> Iterator[Problem]:
 
 
 def _problems_of_points(c: MeasuredRequest) -> Iterator[Problem]:
-    """Find what does not go together in a data set of recordings of points."""
+    """Find the problems of a data set of recordings of points."""
     if c.maps != ("points",):
         yield Problem("maps", list(c.maps), "should be [points], as the recordings hold points")
     if c.output.power is not None:
@@ -130,7 +130,7 @@ def _problems_of_points(c: MeasuredRequest) -> Iterator[Problem]:
 
 
 def _problems_of_any_recording(c: MeasuredRequest) -> Iterator[Problem]:
-    """Find what does not go together whatever the recordings hold."""
+    """Find the problems that do not depend on the content of the recordings."""
     for key in ("column_labels", "slow_time", "products"):
         if value := getattr(c.output, key):
             yield Problem(f"output.{key}", value, "should be left out: recordings have none")

@@ -1,4 +1,4 @@
-"""What is right but hardly meant, as sentences for the user."""
+"""Warnings of values that are valid but hardly meant, as sentences for the user."""
 
 from collections.abc import Iterable, Iterator
 
@@ -14,7 +14,7 @@ MIDDLES = 7.29e9, 8.748e9  # Hz, as data sheets of Novelda's X4 name its two ban
 
 
 def word_warnings(c: Request) -> list[str]:
-    """Say in one line which words of a config are taken for which names of ours."""
+    """Warn, in one line, of words of a config that are taken for names of ours."""
     if not c.other_words:
         return []
     pairs = ", ".join(f"{word} is taken for {slug}" for word, slug in c.other_words.items())
@@ -28,7 +28,7 @@ def word_warnings(c: Request) -> list[str]:
 
 
 def band_warnings(c: Request) -> list[str]:
-    """Say that `radar.carrier_hz` of an impulse radar is the middle of a known chip's band."""
+    """Warn that `radar.carrier_hz` of an impulse radar is the middle of a known chip's band."""
     if not isinstance(c.radar, ImpulseRadar) or c.radar.output != "iq":
         return []
     carrier, width = nominal(c.radar.carrier_hz), nominal(c.radar.bandwidth_hz)
@@ -41,7 +41,7 @@ def band_warnings(c: Request) -> list[str]:
 
 
 def tone_warnings(c: Request) -> list[str]:
-    """Say which interference tones of a config alias, a sentence for each."""
+    """Warn of interference tones that alias, a sentence for each."""
     highest = support(c.radar.prf_hz)[0] / 2
     return [
         f"receiver.tones.{number}.doppler_hz reaches beyond PRF/2 = {highest:g} Hz: the tone "
@@ -52,7 +52,7 @@ def tone_warnings(c: Request) -> list[str]:
 
 
 def tolerance_warnings(c: Request) -> Iterator[str]:
-    """Say that a tolerance looser than the default runs as the default."""
+    """Warn that a tolerance looser than the default runs as the default."""
     tolerance_db, usual_db = c.engine.tolerance_db, EngineConfig().tolerance_db
     computed = c.engine.kind == "direct" and not isinstance(c.radar, ImpulseRadar)
     if computed and tolerance_db > usual_db:
@@ -63,7 +63,7 @@ def tolerance_warnings(c: Request) -> Iterator[str]:
 
 
 def timing_warnings(c: Request, activities: Iterable[Activity] | None = None) -> list[str]:
-    """Say which movements begin after the end of the recording, a sentence for each.
+    """Warn of movements that begin after the end of the recording, a sentence for each.
 
     Args:
         c: the config; numbers that are drawn are taken at their middle.

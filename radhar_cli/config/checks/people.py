@@ -44,7 +44,7 @@ def people_problems(c: Request) -> Iterator[Problem]:
 
 
 def _configs_of_person(c: Request, number: int, slugs: list[str]) -> Iterator[Request]:
-    """Yield configs of one of `people`: of their streams, and of what else they do."""
+    """Yield configs of one of `people`: of their streams, and of their other activities."""
     config = c.of_person(number)
     if STREAM in slugs:
         yield config
@@ -111,7 +111,7 @@ HUMAN_LIMITS = {key: (one.low, one.high) for key, one in _limits if one.high < M
 
 
 def human_problems(c: Request) -> Iterator[Problem]:
-    """Numbers beyond what people do, of the activities that depend on them."""
+    """Numbers beyond the abilities of people, of the activities that depend on them."""
     for key, (low, high) in HUMAN_LIMITS.items():
         number = at(c, key)
         users = [one for one in c.chosen_activities if c.depends_on(one, key)]

@@ -42,7 +42,7 @@ BOARD_PRODUCTS = (*FRAME_MAPS, *OF_POINTS, "points_kind", *OF_FRAMES, "cube")
 
 
 def radar_problems(c: Request) -> Iterator[Problem]:
-    """Find what does not go with the kind of radar that a request has."""
+    """Find the keys that do not go with the kind of radar of a request."""
     match c.radar:
         case BoardRadar():
             yield from board_problems(c, c.radar)
@@ -74,7 +74,7 @@ def _cw_problems(c: Request) -> Iterator[Problem]:
 
 
 def _cw_frames_problems(radar: FramesRadar) -> Iterator[Problem]:
-    """Find what needs both channels of the mixers."""
+    """Find the keys that need both channels of the mixers."""
     if radar.output == "real":
         right = (
             "should be iq with radar.waveform: cw and radar.frame: one channel of a mixer has no "
@@ -102,7 +102,7 @@ def _impulse_problems(c: Request, radar: ImpulseRadar) -> Iterator[Problem]:
 
 
 def profile_problems(c: AnyRequest) -> Iterator[Problem]:
-    """Find what does not fit range profiles, or chirps, simulated or recorded."""
+    """Find the keys that do not fit range profiles, or chirps, simulated or recorded."""
     radar = c.radar
     if not isinstance(radar, ImpulseRadar):
         if c.image.kind == "signed":
@@ -135,7 +135,7 @@ def _step_problems(radar: ImpulseRadar) -> Iterator[Problem]:
 
 
 def board_problems(c: Request, radar: BoardRadar) -> Iterator[Problem]:
-    """Find what a board cannot have, or what is not simulated for boards."""
+    """Find the keys that a board cannot have, or that are not simulated for boards."""
     board, timing = radar.header, radar.timing
     if radar.elements is None:
         right = (
@@ -169,7 +169,7 @@ def board_problems(c: Request, radar: BoardRadar) -> Iterator[Problem]:
 
 
 def frames_problems(c: Request, radar: FramesRadar) -> Iterator[Problem]:
-    """Find what a radar with frames cannot have, or numbers that do not fit together."""
+    """Find keys that a radar with frames cannot have, or numbers that do not fit together."""
     yield from _place_problems(radar)
     if not radar.has_range:
         yield from _cw_problems(c)
@@ -205,7 +205,7 @@ def frames_problems(c: Request, radar: FramesRadar) -> Iterator[Problem]:
 
 
 def _problem_of_samples(radar: FramesRadar, samples: int) -> Problem:
-    """Say that a chirp of a radar with frames has too few samples, or too many."""
+    """Return the problem that a chirp of a radar with frames has too few samples, or too many."""
     if isinstance(radar, Steps):
         right = f"should be at most {MAX_SAMPLES} with radar.frame"
         return Problem("radar.steps", radar.steps, right)
@@ -218,13 +218,13 @@ def _problem_of_samples(radar: FramesRadar, samples: int) -> Problem:
 def _problem_of_length(
     radar: FmcwRadar | SfcwRadar | FramesRadar, longest: float, interval: float, right: str
 ) -> Problem:
-    """Say that a chirp, or a sweep of steps, is too long.
+    """Return the problem that a chirp, or a sweep of steps, is too long.
 
     Args:
         radar: the radar that sends it.
         longest: its longest duration, s.
         interval: the shortest time to the next one, s.
-        right: how long it may be.
+        right: range of its duration, in words.
     """
     if isinstance(radar, Steps):
         right = f"{right} (steps * dwell_s is {show_beside(longest, interval)} s)"
@@ -271,7 +271,7 @@ def _unit_problems(radar: ArrayRadar) -> Iterator[Problem]:
 
 
 def _frame_problems(c: Request, radar: ArrayRadar) -> Iterator[Problem]:
-    """Find what does not fit frames: durations, clutter."""
+    """Find the keys that do not fit frames: durations, clutter."""
     clutter, timing = c.processing.clutter, radar.timing
     if support(c.duration_s)[0] < timing.period_s:
         frame = show_beside(timing.period_s, support(c.duration_s)[0])
@@ -293,7 +293,7 @@ def _frame_problems(c: Request, radar: ArrayRadar) -> Iterator[Problem]:
 
 
 def _detection_problems(c: Request, radar: BoardRadar) -> Iterator[Problem]:
-    """Find what `cloud` asks for and the .cfg of a board does not have."""
+    """Find settings of `cloud` that the .cfg of a board does not have."""
     board, chain = radar.header, c.cloud.chain
     if c.cloud.boundary_box and board.box is None:
         yield _boundary_problem(radar)
@@ -308,7 +308,7 @@ def _detection_problems(c: Request, radar: BoardRadar) -> Iterator[Problem]:
 
 
 def _firmware_problems(c: Request, radar: FramesRadar) -> Iterator[Problem]:
-    """Find what `cloud` asks for and no radar has without the file of its firmware."""
+    """Find settings of `cloud` that no radar has without the file of its firmware."""
     if c.cloud.boundary_box:
         yield _boundary_problem(radar)
     if c.cloud.chain != "best":
@@ -316,7 +316,7 @@ def _firmware_problems(c: Request, radar: FramesRadar) -> Iterator[Problem]:
 
 
 def _boundary_problem(radar: ArrayRadar) -> Problem:
-    """Say that a radar has no box of the room that points could be cropped to."""
+    """Return the problem that a radar has no box of the room that points could be cropped to."""
     right = f"should be false: {radar.named} has no boundaryBox"
     return Problem("cloud.boundary_box", True, right)
 
@@ -342,7 +342,7 @@ def _output_problems_of_board(c: Request) -> Iterator[Problem]:
 
 
 def _missing_on_board(c: Request) -> Iterator[Problem]:
-    """Find what is simulated for one channel alone."""
+    """Find the keys that are simulated for one channel alone."""
     corner = c.receiver.noise_corner_hz
     for name, value in (
         ("tones", [one.model_dump(mode="json") for one in c.receiver.tones]),
@@ -357,7 +357,7 @@ def _missing_on_board(c: Request) -> Iterator[Problem]:
 
 
 def waveform_problems(c: AnyRequest) -> Iterator[Problem]:
-    """Find what does not fit the pulses: chirps that are too long, FFTs that are too short."""
+    """Find the keys that do not fit the pulses: chirps too long, FFTs too short."""
     radar, fft_length = c.radar, c.processing.range_fft_length
     if not radar.sweeps:
         right = f"should be left out with {radar.named}, which has no chirp"

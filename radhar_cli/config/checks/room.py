@@ -12,7 +12,7 @@ from radhar_cli.schema.section import Problem, for_activity
 
 
 def wall_problems(c: Request) -> Iterator[Problem]:
-    """Find what does not fit the wall: its layers, and antennas inside of it."""
+    """Find the problems of the wall: its layers, and antennas inside of it."""
     if c.wall is None:
         return
     yield from _layer_problems(c, c.wall)
@@ -58,7 +58,7 @@ def _layer_problems(c: Request, wall: WallConfig) -> Iterator[Problem]:
 
 
 def back_wall_problems(c: Request) -> Iterator[Problem]:
-    """Find what does not fit the back wall: another wall, or a place in front of people."""
+    """Find the problems of the back wall: another wall, or a place in front of people."""
     key, wall = "room.back_wall_m", c.room.back_wall_m
     if wall is None:
         return
@@ -150,7 +150,7 @@ def room_problems(c: Request) -> Iterator[Problem]:
 def _describe_inside(
     places: Sequence[tuple[float, float]], within: Sequence[tuple[float, float]], named: str
 ) -> str:
-    """Say what of an antenna's place is not inside the box, or before its front, in numbers."""
+    """Describe the coordinates of an antenna that are not inside the box, nor before its front."""
     outside = " and ".join(
         f"{axis} is {b:g}, not between {low:g} and {high:g}"
         for axis, (a, b), (low, high) in zip("xyz", places, within, strict=True)
@@ -164,7 +164,7 @@ def _describe_inside(
 
 
 def tone_problems(c: Request) -> Iterator[Problem]:
-    """Find what of the receiver needs noise that there is not."""
+    """Find the keys of the receiver that need noise where it has none."""
     extra = {"tones": c.receiver.tones, "noise_corner_hz": support(c.receiver.noise_corner_hz)[1]}
     for key in [key for key, is_used in extra.items() if is_used and not c.has_noise]:
         right = (

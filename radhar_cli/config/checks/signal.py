@@ -46,12 +46,12 @@ def map_problem(c: AnyRequest, names: Iterable[str]) -> Problem | None:
 
 
 def problems_of_maps(c: Request, names: tuple[str, ...]) -> list[Problem]:
-    """Find what keeps a config's radar and processing from making maps of other names."""
+    """Find problems of a config's radar and processing with maps of other names."""
     return list(processing_problems(c.model_copy(update={"maps": names})))
 
 
 def processing_problems(c: AnyRequest) -> Iterator[Problem]:
-    """Find what of the processing does not fit the radar or the maps."""
+    """Find the keys of the processing that do not fit the radar or the maps."""
     names = c.maps if isinstance(c, Request) else [n for n in c.maps if n in MAPS_OF_SAMPLES]
     if (of_maps := map_problem(c, names)) is not None:
         yield of_maps
@@ -107,7 +107,7 @@ def _signal_problems(c: AnyRequest) -> Iterator[Problem]:
 
 
 def _range_window_problems(c: AnyRequest) -> Iterator[Problem]:
-    """A window that leaves nothing of what the coherent sum over range reads."""
+    """A window that leaves nothing of the samples that the coherent sum over range reads."""
     processing = c.processing
     name, reads_ends = processing.range_window, processing.range_reference == "start"
     if reads_ends and name not in (None, "rectangular") and processing.range_sum == "coherent":
@@ -160,8 +160,7 @@ def _bin_problems(c: AnyRequest, key: str, value: object, purpose: str) -> Itera
     Args:
         c: the config, whose largest recording counts.
         key: dotted key that asks for them.
-        value: its value.
-        purpose: what they are held for, in words.
+        purpose: purpose for which they are held, in words.
     """
     w = waveform_at(c, *ENDS)
     bins, pulses = w.n_bins, w.n_pulses

@@ -1,4 +1,4 @@
-"""Waveforms at the ends of what a config draws."""
+"""Waveforms at the ends of the laws of a config."""
 
 from typing import cast
 

@@ -1,4 +1,4 @@
-"""What does not go together in a config of streams."""
+"""Checks of keys that do not go together in a config of streams."""
 
 from collections.abc import Iterator
 from typing import cast
@@ -15,7 +15,7 @@ from radhar_cli.schema.section import Problem
 
 
 def stream_problems(c: Request) -> Iterator[Problem]:
-    """Find what does not go together in `stream` and its neighbours; nothing without it."""
+    """Find the problems of `stream` and its neighbours; nothing without it."""
     if c.stream is None:
         return
     if c.motion.model != "human":

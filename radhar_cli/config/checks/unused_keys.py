@@ -1,4 +1,4 @@
-"""Keys of a config that have no effect, because of what another key says."""
+"""Keys of a config that have no effect, because of another key."""
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from functools import partial
@@ -29,7 +29,7 @@ _OF_PEOPLE = ("subject.", "motion.", "timing.")
 
 
 def unused_keys(config: Config) -> list[str]:
-    """Say which keys have no effect although they say something else than if they were left out."""
+    """Warn of keys that have no effect, although their values are not the defaults."""
     fixed = all(isinstance(number, int | float) for _, number in numbers(config))
     same = _drawn_from if fixed else eq
     without = {"recordings": "the scenes of a config; it needs radhar generate --recordings"}
@@ -61,7 +61,7 @@ def _forget_usual_speeds(without: dict[str, str], is_scene: bool) -> None:
 def _describe_unused(
     config: Config, without: Mapping[str, str], same: Callable[[Any, Any], bool]
 ) -> list[str]:
-    """Describe keys {key: reason} that are not what they are where they are left out."""
+    """Describe keys {key: reason} whose values are not the defaults."""
     usual = _left_out(config)
     return [
         f"{key} has no effect with {why}"
@@ -71,7 +71,7 @@ def _describe_unused(
 
 
 def _left_out(config: Config) -> Config:
-    """What a config says where it says nothing, with the radar and the motion that it has."""
+    """Return the defaults under the same radar, model of motion, duration, stream and wall."""
     radar = config.radar
     needed = {
         "waveform",
@@ -116,7 +116,7 @@ def _of_nobody(
 
     Args:
         config: config whose numbers are those of the people.
-        activities: what these people do.
+        activities: activities of these people.
         chosen: the same as the config says it, for the reason.
     """
     for key in _keys_of_people(config):
@@ -131,7 +131,7 @@ def _describe_idle_entries(
 
     Args:
         config: config whose numbers are those of the people.
-        activities: what these people do.
+        activities: activities of these people.
         chosen: the same as the config says it, for the reason.
     """
     usual, lines = _left_out(config), list[str]()
@@ -160,7 +160,7 @@ def _keys_of_people(config: Config) -> Iterator[str]:
 
 
 def _why_nobody(config: Config, activities: Sequence[Activity], key: str, doing: str) -> str:
-    """Why no activity uses a number of people, and which would."""
+    """Return why no activity uses a number of people, with the activities that would."""
     if all(one.motion is not None or config.files_of(one) is not None for one in activities):
         return f"{doing}, whose motion no model makes"
     users = config.users_of(key)

@@ -332,7 +332,7 @@ def _ti_axes(places: Float) -> Float:
 
 
 def _describe(data: Dataset, folder: Path, reading: str) -> None:
-    """Write what the files hold, and the config that they follow from."""
+    """Write a description of the files, and the config that they follow from."""
     licence = data.config.output.license
     people = (
         " Others are in the scenes too: class and joints are those of the sample's main person."

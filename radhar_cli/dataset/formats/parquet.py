@@ -72,7 +72,7 @@ def _files_of_split(data: Dataset, split: int) -> Iterator[tuple[int, Iterator[E
 
 
 def _number_features(config: AnyConfig) -> list[dict[str, str]]:
-    """Columns of numbers, as `datasets` writes them down: index, and what was drawn."""
+    """Columns of numbers, as `datasets` writes them down: index, and drawn numbers."""
     kinds = {"index": "int64"} | ({"labels": "string"} if config.people else {})
     kinds |= {n: "int64" if n == "subject" else "float64" for n in number_names(config)}
     return [{"name": name, "dtype": kind} for name, kind in kinds.items()]

@@ -31,7 +31,6 @@ def encode_message(kind: int, message: bytes, counted: int = 0) -> bytes:
 
     Args:
         kind: Type of the message.
-        message: The message.
         counted: Bytes of type and length that the length counts, too; 0 but of people counting.
     """
     return struct.pack("<2I", kind, len(message) + counted) + message

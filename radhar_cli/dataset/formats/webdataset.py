@@ -79,7 +79,7 @@ def _samples(data: Dataset, map_name: str, split: int) -> Iterator[tuple[str, di
 
 
 def _numbers(data: Dataset, names: list[str], entry: Entry) -> dict[str, Any]:
-    """What was drawn of a sample; null where it does not apply."""
+    """Return the numbers drawn of a sample, by name; null where one does not apply."""
     numbers = {
         name: None if value != value else value
         for name, value in zip(names, entry.values, strict=True)

@@ -91,7 +91,7 @@ class Body:
     """Body of ellipsoids that follow the joints of a motion.
 
     Attributes:
-        motion: how the joints move.
+        motion: motion of the joints.
         segments: segments between its joints, S of them.
         stature: stature of the person, m.
         thickness: thickness of the segments, over the usual one.
@@ -145,7 +145,6 @@ def point_counts(
     a Doppler cell of the window T_w apart, so that no gaps show between their lines.
 
     Args:
-        body: the body.
         antennas: antennas that the speeds are seen by.
         wavelength: lambda, m.
         window: T_w, s.

@@ -145,7 +145,7 @@ class SurfacePaths(OfMotion):
         return scatters
 
     def _centre(self) -> Point:
-        """What surfaces face: the array, or the middle of the antennas."""
+        """Return the point that surfaces face: the array, or the middle of the antennas."""
         if self.antennas.aim is not None:
             return self.antennas.aim.position
         x, y, z = np.mean(self.antennas.places, axis=0)

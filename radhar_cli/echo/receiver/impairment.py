@@ -22,7 +22,6 @@ class Impairment:
         Args:
             x: The echo [K, M] as `look` shows it, which may be overwritten; raw samples unless the
                 impairment is additive.
-            look: The look.
 
         Returns:
             The impaired echo [K, M].

@@ -96,7 +96,7 @@ def _by_known_words(images: ImageSet, known: Sequence[str]) -> ImageSet:
 
 
 def _hint(name: str, accepted: Sequence[str], known: Sequence[str]) -> str:
-    """Advise on a name of a class that is not accepted: by meaning, else what the model knows."""
+    """Advise on a name of a class that is not accepted: by meaning, else by known names."""
     listed = f"the model knows {', '.join(known)}"
     advice = advice_on(name, accepted, listed)
     return listed if advice == FROM_FILES else advice

@@ -107,7 +107,7 @@ def open_tree(
 
 
 class _ListedImage(NamedTuple):
-    """An image file of a tree, and what its folders say of it."""
+    """An image file of a tree, with class and split by its folders."""
 
     split: int  # number of the split; NO_SPLIT in a tree without splits
     class_name: str

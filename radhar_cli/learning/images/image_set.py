@@ -80,7 +80,7 @@ class Chosen:
 
 @dataclass(frozen=True)
 class ImageSet:
-    """Images or sequences of one size, and what is known of each; N is their number."""
+    """Images or sequences of one size, and a table of them; N is their number."""
 
     where: Path  # file or folder that the images came from
     map: str | None  # name of the map, None for a tree that names none
@@ -236,7 +236,7 @@ def shape_in_words(kind: Kind, size: tuple[int, int], channels: int) -> str:
     """Size of an image or a sequence, in words.
 
     Args:
-        kind: what the inputs are.
+        kind: kind of the inputs.
         size: (H, W) of an image or a frame; (frames, points) of clouds.
         channels: number of frames of a sequence of frames.
     """

@@ -51,7 +51,6 @@ def _join_samples(sets: Sequence[ImageSet], classes: tuple[str, ...], source: In
     """Table of the samples of several sets, one after the other; persons go by their names.
 
     Args:
-        sets: sets of images.
         classes: classes of all of them, in which labels are numbered.
         source: number of the set of each sample [N].
     """

@@ -1,4 +1,4 @@
-"""Open labelled images by path: dataset.h5, its folder, or a tree; what `inspect` says of one."""
+"""Open labelled images by path: dataset.h5, its folder, or a tree; summary of one for `inspect`."""
 
 from collections import Counter
 from pathlib import Path
@@ -25,7 +25,7 @@ def open_inputs(
     config: TrainConfig,
     resize: tuple[int, int] | None = None,
 ) -> ImageSet:
-    """Open what the network of a config reads: images, or sequences of a dataset.h5.
+    """Open the inputs of the network of a config: images, or sequences of a dataset.h5.
 
     Args:
         path: data set, or tree of images.

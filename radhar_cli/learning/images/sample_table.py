@@ -1,4 +1,4 @@
-"""What is known of each sample of a data set in memory: a table of rows."""
+"""Table of the samples of a data set in memory, one row each."""
 
 from collections.abc import Iterable
 from dataclasses import dataclass, fields
@@ -47,7 +47,7 @@ class SampleTable:
 
         Args:
             rows: rows [N] of the table.
-            by_person: whether other persons could have been seen; not where who it is is learned.
+            by_person: whether other persons could have been seen; not where the person is learned.
         """
         columns = {"recording": self.recording, "scene": self.scene}
         if by_person and self.person is not None:

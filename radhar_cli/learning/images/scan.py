@@ -45,7 +45,7 @@ def scan(images: ImageSet, rows: Sequence[int] | Index) -> Scan:
 
 
 def content_hash(images: ImageSet, rows: Index, digests: Sequence[str] | None = None) -> str:
-    """SHA-256 of what a training run depends on: classes, labels, splits, pixels.
+    """SHA-256 of the data that a training run depends on: classes, labels, splits, pixels.
 
     Args:
         images: images of a data set.

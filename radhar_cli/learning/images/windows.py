@@ -1,4 +1,4 @@
-"""Windows of streams: images of some seconds, cut every so often, and what is learned of each."""
+"""Windows of streams: images of some seconds, cut every so often, and the targets of each."""
 
 from dataclasses import dataclass, replace
 

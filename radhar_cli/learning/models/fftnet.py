@@ -1,4 +1,4 @@
-"""The paper's network: convolutions for what is near, a learned filter of the FFT for what is far.
+"""The paper's network: convolutions for near pixels, a learned filter of the FFT for far ones.
 
 Source: paper, section IV and its network figure.
 """

@@ -1,4 +1,4 @@
-"""Number and shape of what a network gives."""
+"""Number and shape of the outputs of networks."""
 
 from dataclasses import dataclass
 from enum import Enum

@@ -66,7 +66,7 @@ class TemporalNet(nn.Module):
         return features
 
     def forward_head(self, features: Tensor, pre_logits: bool = False) -> Tensor:
-        """Logits [B, W, count] of features, or [B, count] of an image; or what they are made of."""
+        """Logits [B, W, count] of features, or [B, count] of an image; or their features."""
         by_column = features.transpose(1, 2)
         pooled = by_column if self.outputs.per_frame else by_column.mean(1)
         return pooled if pre_logits else self.head(pooled)

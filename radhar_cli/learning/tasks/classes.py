@@ -1,4 +1,4 @@
-"""What the main person does: one class an input (`target: classes`)."""
+"""Activity of the main person: one class an input (`target: classes`)."""
 
 from radhar_cli.learning.tasks.categories import Classifier
 

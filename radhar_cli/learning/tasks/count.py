@@ -1,4 +1,4 @@
-"""How many people there are: one class an input (`target: count`)."""
+"""Number of people: one class an input (`target: count`)."""
 
 from dataclasses import replace
 

@@ -1,4 +1,4 @@
-"""What the main person does in every column of a stream (`target: frames`)."""
+"""Activity of the main person in every column of a stream (`target: frames`)."""
 
 from collections.abc import Mapping
 from dataclasses import replace

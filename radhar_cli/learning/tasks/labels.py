@@ -1,4 +1,4 @@
-"""What anybody in a scene does: yes or no for each class (`target: labels`)."""
+"""Activities of everybody in a scene: yes or no for each class (`target: labels`)."""
 
 from collections.abc import Mapping
 from dataclasses import replace

@@ -18,7 +18,7 @@ THRESHOLD = 0.5  # probability above which a label is found
 
 @dataclass(frozen=True)
 class LabelResult:
-    """How well one label is found."""
+    """Score of the detection of one label."""
 
     name: str
     images: int  # that have it

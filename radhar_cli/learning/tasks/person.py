@@ -1,4 +1,4 @@
-"""Who it is, whatever they do: one class a person (`target: person`)."""
+"""Identity of the person, whatever the activity: one class a person (`target: person`)."""
 
 import hashlib
 import re
@@ -50,7 +50,7 @@ class Persons(Classifier):
         return _with_split_by_recording(replace(images, classes=classes, samples=samples))
 
     def split_as_learned(self, images: ImageSet) -> ImageSet:
-        """Images with the split of `relabel`; as they are where nobody says who is seen."""
+        """Images with the split of `relabel`; as they are where the set does not name persons."""
         with suppress(FolderError):
             relabelled = self.relabel(images)
             samples = replace(images.samples, split=relabelled.samples.split)
@@ -141,7 +141,7 @@ def _persons_of(images: ImageSet) -> list[str]:
 
 
 def why_not_split_by_recording(samples: SampleTable, count: int) -> str | None:
-    """Why persons cannot be learned with the split of a set, in words; None if they can.
+    """Describe why a set's split is not one to learn persons with; None if it is.
 
     Args:
         samples: table whose labels are persons.

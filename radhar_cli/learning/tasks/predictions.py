@@ -1,4 +1,4 @@
-"""What a network finds in the rows of a set, and what is asked of its evaluation."""
+"""Predictions of a network for the rows of a set, and options of its evaluation."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -9,7 +9,7 @@ from radhar_cli.numerics.arrays import Float, Index
 
 @dataclass(frozen=True)
 class Predictions:
-    """What a network finds in N rows of a set."""
+    """Predictions of a network for N rows of a set."""
 
     images: ImageSet
     rows: Index  # [N] rows of the set

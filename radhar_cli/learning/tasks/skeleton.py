@@ -1,4 +1,4 @@
-"""Where the joints of a person are in every frame of a sequence (`target: skeleton`)."""
+"""Positions of a person's joints in every frame of a sequence (`target: skeleton`)."""
 
 from collections.abc import Mapping
 from dataclasses import replace

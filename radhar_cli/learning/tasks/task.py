@@ -1,4 +1,4 @@
-"""What a network learns of an input: a task has its outputs, targets, loss, score and report."""
+"""Tasks that a network learns: outputs, targets, loss, score and report."""
 
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterable, Mapping, Sequence
@@ -21,7 +21,7 @@ from radhar_cli.numerics.arrays import Float, Index
 
 
 class Names(Protocol):
-    """What images, and a trained network, have names for."""
+    """Names that images, and a trained network, have."""
 
     @property
     def classes(self) -> tuple[str, ...]:
@@ -69,7 +69,7 @@ class Evaluation:
 
 @dataclass(frozen=True)
 class Task(ABC):
-    """What a network learns of an input; B inputs in a batch, N in a data set.
+    """Task that a network learns of an input; B inputs in a batch, N in a data set.
 
     A task of one's own is a subclass in a file of its own and a line of `choices.TASKS`.
     """
@@ -112,7 +112,7 @@ class Task(ABC):
             images.rows(split)
 
     def match(self, images: ImageSet, known: Names, names: Mapping[str, str | None]) -> ImageSet:
-        """Bring labelled images to what a trained network knows.
+        """Bring labelled images to the names that a trained network knows.
 
         Args:
             images: the set, as it was opened.
@@ -136,7 +136,7 @@ class Task(ABC):
     # The network: what it gives, and how good that is.
 
     def names(self, known: Names) -> tuple[str, ...]:
-        """Names of what the outputs of the network stand for."""
+        """Meanings of the outputs of the network, by name."""
         return known.classes
 
     def outputs(self, known: Names) -> Outputs:
@@ -180,7 +180,7 @@ class Task(ABC):
 
         Args:
             run: name of the run, for messages.
-            options: which figures are asked for; t-SNE and the paper's groups are of classes.
+            options: choice of figures; t-SNE and the paper's groups are of classes.
             known: names that the network knows.
 
         Raises:

@@ -1,4 +1,4 @@
-"""When a movement begins, so that enough of it lies within the recording.
+"""Onset of a movement, drawn so that enough of it lies within the recording.
 
 A recording is a window that is cut out of what a person does. Where it is cut is left to chance, as
 long as what the class is named by can be seen: a movement of D seconds that begins at t is seen for

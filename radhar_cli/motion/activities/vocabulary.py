@@ -81,7 +81,7 @@ def advice_on(name: str, known: Iterable[str], otherwise: str) -> str:
     Args:
         name: as somebody wrote it.
         known: our names that would do.
-        otherwise: what is returned where nothing is meant.
+        otherwise: text that is returned where nothing is meant.
     """
     names, word = list(known), plain_word(name)
     meant = meaning_of(name, names)

@@ -69,9 +69,7 @@ def hands_of_aid(aid: Aid, body: Physique, foot: Float | None, hip_ahead: Float)
     """Hands on an aid [3, 2, M], seen by the walker, m.
 
     Args:
-        aid: What they are on.
-        body: Whose hands.
-        foot: Where the aid stands or swings, ahead, to the left and up [3, M], m; None: rolled.
+        foot: Place of the aid's foot, ahead, to the left and up [3, M], m; None: rolled.
         hip_ahead: Distance of the hip ahead of the walker's place [M], m.
     """
     over = body.stature

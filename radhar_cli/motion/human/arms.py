@@ -20,7 +20,6 @@ def arm_directions(trunk: Axes, shoulder: Float, elbow: Float) -> tuple[Float, F
     """Unit vectors of upper arms and forearms [3, 2, M] that hang from a trunk.
 
     Args:
-        trunk: Axes of the trunk.
         shoulder: Flexion ahead of the right and left shoulder [2, M], rad.
         elbow: Flexion of the elbows [2, M], rad.
     """
@@ -48,7 +47,6 @@ def arm_directions_to_hands(
     """Unit vectors of upper arms and forearms [3, 2, M] between shoulders and hands.
 
     Args:
-        trunk: Axes of the trunk.
         hands: Hands relative to the shoulders, in the trunk's axes (ahead, left, up) [3, 2, M], m.
         poles: Directions in which the elbows bend, in the trunk's axes [3, 2, M].
         arm: Length of the upper arm, and of the forearm, m.
@@ -61,10 +59,9 @@ def arm_directions_to_hands(
 
 
 def hanging_hands(body: Physique, shoulder: Float, elbow: Float) -> tuple[Float, Float]:
-    """Where hands of `arm_directions` are, and in which directions their elbows bend.
+    """Place hands that hang by angles, and return the directions in which their elbows bend.
 
     Args:
-        body: Whose arms.
         shoulder: Flexion of the right and left shoulder [2, M], rad.
         elbow: Flexion of the elbows [2, M], rad.
 
@@ -93,12 +90,10 @@ def arm_directions_near_floor(
     stretched arm's: -ln(exp(-k d) + exp(-k d_max))/k.
 
     Args:
-        body: Whose arms.
-        trunk: Axes of the trunk.
         shoulders: Right and left shoulder [3, 2, M], m.
         flexion: Flexion of shoulders and of elbows where the arms hang, each [2, M], rad.
         floor: Points on the floor that the hands reach for [3, 2, M], m.
-        share: How far the hands are on the floor [M].
+        share: Share of the way of the hands to the floor [M].
         elbows: Directions in which the elbows bend with hands on the floor, in the trunk's axes [3,
             2] or [3, 2, M].
 

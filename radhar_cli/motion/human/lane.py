@@ -32,7 +32,7 @@ class Lane:
 
 
 class WalkTimes(NamedTuple):
-    """When a walk begins and ends, and how long its changes take, s."""
+    """Beginning and end of a walk, and durations of its changes, s."""
 
     begin: float
     end: float  # when it begins to stop; of a walk that goes on, the end of the recording
@@ -49,7 +49,6 @@ def place_half_turns(lane: Lane, speed: float, arc: float, walk: WalkTimes) -> F
         lane: Straight way between turns, way before the first, loss of speed in a turn.
         speed: Walking speed on the straight, m/s.
         arc: Length of a half turn, m.
-        walk: Times of the walk.
 
     Returns:
         Distance at which each turn begins [K], m, rising. A walk that stops ends on a straight: a

@@ -62,7 +62,7 @@ class HumanMotion:
 
     @cached_property
     def landmarks(self) -> tuple[str, ...]:
-        """Names of joints and hip joints, and of the toes of who lies, whose feet do not stand."""
+        """Names of joints and hip joints, and of the toes of a lying person."""
         toes = any(isinstance(part, KNOWS_TOES) for part, _ in self.parts)
         return (*JOINTS, *HIPS, *(TOES if toes else ()))
 
@@ -187,7 +187,7 @@ class HumanMotion:
 
     @cached_property
     def _begins(self) -> list[float]:
-        """When each part but the first takes over, s: a walk does so from what it overlaps."""
+        """Times at which parts but the first take over, s; a part planted by a walk, at its end."""
         pairs = pairwise(part for part, _ in self.parts)
         return [
             last.end if isinstance(last, Walking) and last.planted[-1:] == (part,) else part.begin

@@ -20,7 +20,7 @@ class Phase(NamedTuple):
 
 
 class Place(NamedTuple):
-    """Where a part ends, seen from where it began: m ahead, m to the left, rad to the left."""
+    """Place of a part's end, seen from its beginning: m ahead, m to the left, rad to the left."""
 
     ahead: float = 0.0
     left: float = 0.0
@@ -61,9 +61,9 @@ class Part(Protocol):
     Attributes:
         before: State of rest in which it begins, such as standing, seated or lying.
         after: State of rest in which it ends.
-        begin: When the body leaves its first state, s.
-        end: When the body has come to rest, s; infinity for what goes on.
-        place: Where it ends.
+        begin: Time at which the body leaves its first state, s.
+        end: Time at which the body has come to rest, s; infinity for what goes on.
+        place: Place of its end.
         phases: Names of what is under way, and from when on.
         breakpoints: Instants (s) at which a position is not smooth.
     """
@@ -99,7 +99,7 @@ class Movement(Protocol):
 
         Args:
             person: Body that moves.
-            begin: When the movement begins, s.
+            begin: Beginning of the movement, s.
             horizon: Until when a movement that goes on is worked out, s.
         """
         ...

@@ -40,7 +40,6 @@ def hip_joints(person: Physique, yaw: Float, roll: Float) -> Float:
     """Right and left hip joint [3, 2, M] relative to the hip point, m.
 
     Args:
-        person: Whose hips.
         yaw: Turn of the pelvis, right hip ahead [M], rad.
         roll: Turn of the pelvis, left hip down [M], rad.
     """
@@ -65,7 +64,6 @@ def hip_height(
     least, so the reach D holds exactly.
 
     Args:
-        person: Whose hip.
         standing: z_stand, the height on standing legs, m.
         hip: x and y of the hip point [2, M], m.
         joint_offsets: Hip joints relative to the hip point [3, 2, M], m.

@@ -47,13 +47,13 @@ def posture(
         trunk: rad.
         shoulder: Flexion of the shoulders, rad.
         elbow: Flexion of the elbows, rad.
-        standing: How far the legs take part in the sway, 0 to 1.
-        upright: How far the trunk takes part in it, 0 to 1.
+        standing: Share of the sway that the legs follow, 0 to 1.
+        upright: Share of it that the trunk follows, 0 to 1.
 
     Returns:
         {channel: value}; with "hands", how far the hands are on the floor, at "hands_ahead" and
         "hands_beside" (m), and how far their elbows point outwards along it, "splayed";
-        "heels", how far the shanks of who lies on the knees are lifted (rad); "feet", how far the
+        "heels", how far the shanks of a person on the knees are lifted (rad); "feet", how far the
         feet have slid ahead (m).
     """
     return {
@@ -153,7 +153,7 @@ def legs(
     """Knee and hip [3, M] above the ankle, m.
 
     Args:
-        person: Whose legs, both alike.
+        person: Person with the legs, both alike.
         shank: Angle from the vertical, positive ahead [M], rad.
         thigh: Angle from the vertical [M], rad.
         lean: Lean of both ahead [M], rad.
@@ -177,9 +177,7 @@ def arms_of_posture(
     """Unit vectors of upper arms and forearms [3, 2, M] of which the hands may be on the floor.
 
     Args:
-        person: Whose arms.
         hip: Hip point [3, M], m.
-        trunk: Axes of the trunk.
         flexion: Flexion of shoulders and of elbows, each [2, M], rad.
         hands: How far the hands are on the floor, how far ahead there and beside the middle (m),
             and how far their elbows point outwards along it, each [M].

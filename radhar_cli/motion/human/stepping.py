@@ -52,7 +52,7 @@ class StepTo:
             raise ValueError(f"a stance is reached within at least 2 steps, not {self.steps}")
 
     def for_stature(self, stature: float) -> "StepTo":
-        """Return the steps of a stature (m): shorter ones of who is shorter than 1.75 m."""
+        """Return the steps of a stature (m): shorter ones below 1.75 m."""
         scale, (ahead, left, turn) = min(stature / REFERENCE_STATURE, 1.0), self.place
         place = Place(scale * ahead, scale * left, turn)
         return replace(self, place=place, lift=scale * self.lift, drop=scale * self.drop)

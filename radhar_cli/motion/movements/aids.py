@@ -64,7 +64,7 @@ def walking_with_walker(gait: Gait, rolled: bool, pitch: float, stature: float) 
     """Gait behind a rollator, or a frame that is lifted once a stride.
 
     Args:
-        gait: Gait of somebody as slow behind a rollator; who lifts a frame is slower.
+        gait: Gait of somebody as slow behind a rollator; a lifted frame is slower.
         rolled: Whether it is a rollator.
         stature: m.
         pitch: Lean of the trunk ahead, rad.

@@ -108,7 +108,7 @@ class Crawling:
 
     @property
     def _stops(self) -> float:
-        """When the body begins to slow down, s."""
+        """Time at which the body begins to slow down, s."""
         last = max(self.horizon, self.begin) + 2 * self.period
         return min(self.begin + self.crawl.duration, last)
 

@@ -156,7 +156,7 @@ class Exercising(Repeating[Exercise]):
 
     @property
     def _end(self) -> float:
-        """When the body has done the last repetition, s; infinity for what goes on."""
+        """Time at which the body has done the last repetition, s; infinity for what goes on."""
         start, pace, _ = self._repetitions[-1]
         end = start + pace * self.movement.period
         return inf if self.movement.duration == inf else end + CROUCH_S * bool(self.movement.hops)
@@ -169,7 +169,7 @@ class Exercising(Repeating[Exercise]):
 
     @cached_property
     def _flights(self) -> list[tuple[float, float]]:
-        """When the feet leave the floor, and how long they are in the air, s."""
+        """Times at which the feet leave the floor, and durations in the air, s."""
         exercise = self.movement
         take_offs = [
             (start + pace * exercise.period * hop, exercise.flight * size**0.5)

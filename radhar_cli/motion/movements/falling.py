@@ -250,8 +250,7 @@ def _fall_from_standing(
     """Part of a fall in which the sway comes to its end.
 
     Args:
-        person: Who falls.
-        begin: When the balance is lost, s.
+        begin: Time at which the balance is lost, s.
         duration: Unit of the steps, s.
         rest: Channels before the fall.
         steps: Changes of the channels.

@@ -68,7 +68,7 @@ class FallingSideways:
 
     @property
     def fall_start(self) -> float:
-        """When the balance is lost, s."""
+        """Time at which the balance is lost, s."""
         return self.begin + 0.75 * self.fall.rising
 
     @property

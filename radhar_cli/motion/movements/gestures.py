@@ -75,7 +75,7 @@ class GesturesConfig(Section, Generic[B]):
     cup_held: Annotated[B, ByActivity(NOT_NEGATIVE, RATIO), People("drinking", 0, 1)] = (
         default_draw(Choice(choice=(0, 1)))
     )
-    """Where a standing person has the cup between drinks: 1 ahead, 0 at the hanging arm."""
+    """Place of a standing person's cup between drinks: 1 ahead, 0 at the hanging arm."""
     strokes_hz: Annotated[
         B, ByActivity(NOT_NEGATIVE, FREQUENCY), People("writing writing_seated", 1, 6)
     ] = default_draw(normal(4.0, 0.8, 2.5, 5.5))
@@ -153,7 +153,7 @@ class Gesturing(Repeating[G]):
 
     @cached_property
     def _last_s(self) -> float:
-        """When the last repetition has ended, s."""
+        """Time at which the last repetition has ended, s."""
         start, pace, _ = self._repetitions[-1]
         return start + pace * self.movement.period
 
@@ -217,7 +217,6 @@ class Gesturing(Repeating[G]):
 
         Args:
             t: Times [M], s.
-            trunk: Axes of the trunk.
             rest: Flexion of shoulders and of elbows at rest, each [2, M], rad.
             values: Values of the channels, each [M].
         """
@@ -244,10 +243,9 @@ class Gesturing(Repeating[G]):
         """Unit vectors of arms [3, 2, M] between hanging and hands where they are at work.
 
         Args:
-            trunk: Axes of the trunk.
             rest: Flexion of shoulders and of elbows at rest, each [2, M], rad.
-            raised: How far the hands are at work [2, M], 0 to 1.
-            hands: Where they then are, from their shoulders, in the trunk's axes [3, 2, M], m.
+            raised: Share of the way of the hands to their work [2, M], 0 to 1.
+            hands: Places of their work, from their shoulders, in the trunk's axes [3, 2, M], m.
             poles: Directions in which the elbows then bend, in the trunk's axes [3, 2, M].
         """
         places, directions = hanging_hands(self.person, *rest)

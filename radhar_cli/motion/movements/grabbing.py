@@ -31,12 +31,12 @@ class GrabbingConfig(Section, Generic[B]):
 
 
 class GrabbingTiming(Section, Generic[B]):
-    """When something is picked up, and how long it takes."""
+    """Beginning and duration of picking something up."""
 
     grab_start_s: Annotated[B, ByActivity(NOT_NEGATIVE, SECONDS, null=True), People("S4")] = (
         default_draw(None)
     )
-    """When picking up begins; null is by timing.onset."""
+    """Beginning of picking up; null is by timing.onset."""
     grab_duration_s: Annotated[B, ByActivity(NOT_NEGATIVE, SECONDS), People("S4", 1, 60)] = (
         default_draw(normal(2.5, 0.5, 1.6, 3.6))
     )

@@ -16,7 +16,7 @@ class Mover(Protocol):
     """A person of a scene who is to make a movement: numbers of the scene, and random streams.
 
     Attributes:
-        duration: How long the movement lasts, s; infinity goes on.
+        duration: Duration of the movement, s; infinity goes on.
         place: Place of the movement in its sequence, which names its random streams.
         seconds: Duration of the recording, s.
         stature: Height of the person, m.
@@ -52,7 +52,7 @@ class MovementKind:
 
     Attributes:
         name: Name in `activities` and in sequences.
-        meaning: What a class of it shows, in a line.
+        meaning: Meaning of a class of it, in a line.
         make: Makes the movement of a person, from rest.
         before: State of rest in which it usually begins.
         after: State in which it then ends.
@@ -68,7 +68,7 @@ class MovementKind:
         gestures: Fidgets that come with it, of size 1: channel, rad, whether after its end or its
             beginning, from when on and for how long, s.
         words: Other words for it, with spaces between them, as in the next three.
-        manners: What may stand behind or before a word for it, and changes nothing.
+        manners: Words behind or before a word for it, which change nothing.
         nearby: Words of something that comes near it: suggested, but not taken for the same.
         with_key: {key that makes the difference, and how: words for it}.
     """

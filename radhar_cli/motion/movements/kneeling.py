@@ -1,7 +1,8 @@
 """Kneeling on both knees, upright or back on the heels, or on hands and knees; and getting up.
 
-The knees lie as high as their joints are above the skin, the hip of who sits back as high as the
-buttocks on the heels: guesses. The trunk is upright on the knees, and slightly ahead on the heels.
+The knees lie as high as their joints are above the skin, the hip of a person who sits back as high
+as the buttocks on the heels: guesses. The trunk is upright on the knees, and slightly ahead on the
+heels.
 """
 
 from dataclasses import dataclass

@@ -2,7 +2,7 @@
 
 The body turns about its long axis by a roll: 0 on the back, 90 degrees on the left side, 180 on the
 belly, -90 on the right side. Limbs are curves of the roll, a + b cos(roll) + c cos(2 roll) + d
-sin(roll), through these four postures, so that whoever turns over goes through all between them.
+sin(roll), through these four postures, so that turning over goes through all between them.
 Thighs and trunk rest on the surface at the thickness of the body's ellipsoids
 (`radhar_cli.motion.segments`); where the limbs are is a guess. In bed people spend 54 % of the time
 on a side, 38 % on the back, 7 % on the belly, and shift 1.6 times an hour (Skarpsno et al., Nat.
@@ -11,7 +11,7 @@ across and the knee drawn up, as adults most often do (Richter, VanSant and Newt
 (1989) 63); how long it takes is a guess.
 
 Breathing moves the chest ahead (Kaneko and Horie, Respir. Care 57 (2012) 1442, of people on the
-back): upwards of who lies on the back, level of who lies on a side. The belly cannot move into the
+back): upwards on the back, level on a side. The belly cannot move into the
 surface, so the back rises; that it does so as far as a chest is a guess.
 """
 
@@ -63,7 +63,7 @@ class LyingConfig(Section, Generic[B]):
     hands: Annotated[B, ByActivity(NOT_NEGATIVE, RATIO), People(None, 0, 1)] = default_draw(
         uniform(0.0, 1.0)
     )
-    """Where the hands of a person on the back are: 0 beside the body, 1 on the belly."""
+    """Place of the hands of a person on the back: 0 beside the body, 1 on the belly."""
 
 
 SECTION = LyingConfig
@@ -261,12 +261,9 @@ def body_pose(
     """Pose of a body of which hip, axes and limbs are known, above a surface.
 
     Args:
-        person: Whose body.
         hip: Hip point [3, M], m.
-        pelvis: Axes of the pelvis.
-        trunk: Axes of the trunk.
         limbs: Limbs in these axes.
-        surface: What knees, ankles, elbows and hands stay above.
+        surface: Height that knees, ankles, elbows and hands stay above.
         breath: Displacement of the chest [M], m.
     """
     points = {}

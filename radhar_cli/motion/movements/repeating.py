@@ -60,9 +60,9 @@ def repetitions(
     """Repetitions from `first` (s) on that begin before `until` (s).
 
     Args:
-        first: When the first repetition begins, s.
+        first: Beginning of the first repetition, s.
         period: Time that a usual one takes until the next begins, s.
-        until: When the last has begun at the latest, s.
+        until: Latest beginning of the last, s.
         paces: Time of each repetition over the period; 1 where they are used up.
         sizes: Size of each repetition over the usual one; 1 where they are used up.
 

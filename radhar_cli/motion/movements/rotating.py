@@ -91,7 +91,7 @@ class Turning(Repeating[Turn]):
 
     @cached_property
     def _starts(self) -> Float:
-        """When turns to both sides begin [K] (s), as long as one differs from the next."""
+        """Times at which turns to both sides begin [K], s, as long as one differs from the next."""
         f = self.movement.frequency
         count = max(len(self.movement.paces), len(self.movement.sizes)) - 1
         within = ceil(f * (min(self.horizon, self.end) - self.begin))

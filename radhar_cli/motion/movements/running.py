@@ -345,7 +345,7 @@ class Running:
 
     @cached_property
     def _footholds(self) -> Float:
-        """Where the foot of each contact stands ahead [K], m."""
+        """Distances ahead at which the foot of each contact stands [K], m."""
         landing, leaving = self._path
         x: Float = landing + AHEAD_OF_HIP * (leaving - landing)
         if self.from_rest:
@@ -371,7 +371,7 @@ class Running:
 
     @cached_property
     def _ramps(self) -> tuple[tuple[float, float] | None, tuple[float, float] | None]:
-        """When the run is taken up, and given up: beginning and duration of each, s."""
+        """Beginning and duration of the speeding up, and of the slowing down, s; None without."""
         up = (self.begin, 1.6 * FIRST_S * self._scale) if self.from_rest else None
         if not self.stops:
             return up, None
@@ -635,7 +635,7 @@ def _roll(share: Float, roll: Float | float) -> Float:
 
 
 def _rolled(body: Physique, beta: Float) -> tuple[Float, Float]:
-    """How far ahead of its foothold an ankle is, and how high, m, by the foot's turn [...] rad."""
+    """Return an ankle's distance ahead of its foothold and its height, m, by the foot's turn."""
     cos, sin = np.cos(beta), np.sin(beta)
     return body.toes * (1 - cos) + body.ankle * sin, body.toes * sin + body.ankle * cos
 

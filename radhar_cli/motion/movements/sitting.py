@@ -48,7 +48,7 @@ class SittingConfig(Section, Generic[B]):
 
 
 class SittingTiming(Section, Generic[B]):
-    """When people sit down or stand up, and how long it takes them."""
+    """Beginnings and durations of sitting down and standing up."""
 
     seat_start_s: Annotated[
         B,
@@ -57,7 +57,7 @@ class SittingTiming(Section, Generic[B]):
         Paper("S5 S6"),
         ByModel(paper=0.5),
     ] = default_draw(None)
-    """When sitting down or standing up begins; null of people is by timing.onset."""
+    """Beginning of sitting down or standing up; null of people is by timing.onset."""
     seat_duration_s: Annotated[
         B,
         ByActivity(NOT_NEGATIVE, SECONDS, null=True),
@@ -76,7 +76,7 @@ class SittingTiming(Section, Generic[B]):
         Paper("S9 S11"),
         ByModel(paper=0.5),
     ] = default_draw(None)
-    """When standing up or getting up before a walk begins; null of people is by timing.onset."""
+    """Beginning of standing up or getting up before a walk; null of people is by timing.onset."""
     rise_duration_s: Annotated[
         B,
         ByActivity(NOT_NEGATIVE, SECONDS, null=True),

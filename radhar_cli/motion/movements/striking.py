@@ -104,7 +104,7 @@ class Striking(Repeating[K]):
 
     @cached_property
     def _stance_end_s(self) -> float:
-        """When the last blow has ended and the stance begins to be left, s."""
+        """Time at which the last blow has ended and the stance begins to be left, s."""
         if isinf(self.movement.duration):
             return inf
         return max((step.start + step.length for step in self._strike_steps), default=self.begin)

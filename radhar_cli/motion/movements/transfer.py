@@ -1,10 +1,10 @@
 """Between a seat, or the floor after a fall, and lying: into bed, out of it, onto the belly.
 
-Who goes to bed sits down on its edge, lies down to the side of the pillow while the legs swing up
-with the pelvis, and rolls over; who gets up does the reverse: the log roll that nurses teach, and
-one of the ways in which adults rise from a bed (Ford-Smith and VanSant, Phys. Ther. 73 (1993) 300).
-How long it takes differs with age and strength (Alexander et al., J. Rehabil. Res. Dev. 37 (2000)
-633); the durations here, and the times within them, are guesses.
+A person who goes to bed sits down on its edge, lies down to the side of the pillow while the legs
+swing up with the pelvis, and rolls over; getting up is the reverse: the log roll that nurses teach,
+and one of the ways in which adults rise from a bed (Ford-Smith and VanSant, Phys. Ther. 73 (1993)
+300). How long it takes differs with age and strength (Alexander et al., J. Rehabil. Res. Dev. 37
+(2000) 633); the durations here, and the times within them, are guesses.
 """
 
 from collections.abc import Iterable

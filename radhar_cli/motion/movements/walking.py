@@ -122,12 +122,12 @@ class WalkingConfig(Section, Generic[B]):
 
 
 class WalkingTiming(Section, Generic[B]):
-    """When walks begin and end before and after other movements."""
+    """Beginnings and ends of walks before and after other movements."""
 
     walk_begin_s: Annotated[
         B | None, ByActivity(NOT_NEGATIVE, SECONDS, null=True), People("S8", 0, 600)
     ] = default_draw(None)
-    """When the walk of S8 begins, after standing; null is by timing.onset, before or after 0 s."""
+    """Beginning of the walk of S8, after standing; null is by timing.onset, before or after 0 s."""
     walk_start_s: Annotated[
         B,
         ByActivity(NOT_NEGATIVE, SECONDS, null=True),
@@ -135,7 +135,7 @@ class WalkingTiming(Section, Generic[B]):
         Paper("S9 S11"),
         ByModel(paper=2.0),
     ] = default_draw(None)
-    """When the walk after rising begins; null of people is when they have risen, less overlap_s."""
+    """Beginning of the walk after rising; null of people is the end of rising, less overlap_s."""
     walk_stop_s: Annotated[
         B,
         ByActivity(NOT_NEGATIVE, SECONDS, null=True),
@@ -143,8 +143,8 @@ class WalkingTiming(Section, Generic[B]):
         Paper("S10 S12"),
         ByModel(paper=2.0),
     ] = default_draw(None)
-    """When the walk before sitting down or falling begins to end; null of people is by
-    timing.onset, which says when sitting down or falling begins."""
+    """Time at which the walk before sitting down or falling begins to end; null of people is by
+    timing.onset, the beginning of sitting down or falling."""
     overlap_s: Annotated[B, ByActivity(NOT_NEGATIVE, SECONDS), People("S9 S10 S11 S12", 0, 0.8)] = (
         default_draw(0.0)
     )
@@ -345,7 +345,7 @@ class Walking:
         return g
 
     def _bent(self, t: Float) -> Float:
-        """How far [M] the legs are as bent as those that walk at times t [M] (s), not at rest."""
+        """Compute the share [M] of a walker's bend that legs have at times t [M] (s); 0 at rest."""
         share: Float = np.ones(t.size)
         if self.from_rest:
             share = minimum_jerk((t - self.begin) / self._unlocking)
@@ -424,7 +424,7 @@ class Walking:
 
     @cached_property
     def _slow_spans(self) -> Float:
-        """When the walker begins and ends to go slower in each half turn [2, K], s."""
+        """Times at which the walker begins and ends to go slower in each half turn [2, K], s."""
         lane, v = self.gait.lane, self.gait.speed
         if lane is None or not self._turn_starts.size:
             return np.empty((2, 0))
@@ -468,7 +468,7 @@ class Walking:
 
     @property
     def _trip_start(self) -> float:
-        """When the walker trips, s."""
+        """Time at which the walker trips, s."""
         return self.begin + min(self.stop - self.begin, 5.0) / 2
 
     @cached_property
@@ -566,7 +566,7 @@ class Walking:
         """Phases of the events of a foot.
 
         Args:
-            delay: How much later its stride is than the right foot's, fraction of a stride.
+            delay: Delay of its stride to the right foot's, fraction of a stride.
 
         Returns:
             Phases [4, N + 1] of heel-off, toe-off, touch-down, and of the body above the foothold;
@@ -595,7 +595,7 @@ class Walking:
         """Changes of a foot's stride by a limp, fractions of a stride.
 
         Args:
-            delay: How much later the foot's stride is than the right one's without a limp.
+            delay: Delay of the foot's stride to the right one's without a limp.
 
         Returns:
             How much later it touches down, how much longer it stands, and how much later the body
@@ -692,17 +692,17 @@ class Walking:
         rows = self._curves @ curves.basis(u)
         rows *= g
         surge, aside, yaw, roll, twist, *arms = rows
-        nothing = np.zeros(u.size)
+        zero = np.zeros(u.size)
         return BodyChannels(
             hip=np.array([surge, aside]),
             pelvis_yaw=yaw,
             pelvis_roll=roll,
             pitch=self.gait.trunk_pitch * g,
             twist=twist,
-            lean=self._limping_lean(u) * g if self.gait.limp else nothing,
+            lean=self._limping_lean(u) * g if self.gait.limp else zero,
             shoulders=np.array(arms[:2]),
             elbows=np.array(arms[2:]) + self.person.elbow,
-            hands=(nothing, nothing, nothing, nothing),
+            hands=(zero, zero, zero, zero),
         )
 
     def _stance(self, t: Float, distance: Float, idle: IdleState, share: Float) -> Stance:
@@ -752,7 +752,7 @@ class Walking:
 
     @cached_property
     def _aid_track(self) -> FootTrack | None:
-        """Course of what is set on the floor ahead, None where nothing is."""
+        """Course of the aid on the floor ahead; None without one."""
         aid = self.gait.held
         if not isinstance(aid, Aid) or aid.down is None:
             return None
@@ -783,7 +783,7 @@ class Walking:
         return FootTrack(self.person, falls, 0.0, aid.lift * self.person.stature, 0.0)
 
     def _held_place(self, t: Float, x: Float, y: Float, heading: Float | None) -> Float | None:
-        """Place [3, M] (m) of what is set on the floor, seen by the walker at x, y and heading."""
+        """Place [3, M] (m) of the aid on the floor, seen by the walker at x, y and heading."""
         if self._aid_track is None:
             return None
         place = self._aid_track(t)
@@ -804,10 +804,9 @@ class Walking:
         """Unit vectors of upper arms and forearms [3, 2, M] of which some hold something.
 
         Args:
-            trunk: Axes of the trunk.
             shoulders: Right and left shoulder [3, 2, M], m.
             flexion: Flexion of shoulders and elbows of arms that swing, each [2, M], rad.
-            place: Where an aid is on the floor [3, M], m.
+            place: Place of an aid on the floor [3, M], m.
             hip_ahead: Distance of the hip ahead [M], m.
             g: Share of the walk [M]: at rest the arms hang.
         """

@@ -19,7 +19,7 @@ LYING_HEIGHT = 0.15
 
 @dataclass(frozen=True)
 class PaperGait:
-    """How fast and how far the limbs of the paper's model swing."""
+    """Speed and swings of the limbs of the paper's model."""
 
     frequency: float  # Hz
     # thigh, calf, arm: amplitudes of the joint angles, rad
@@ -32,7 +32,7 @@ class PaperGait:
 
 @dataclass(frozen=True)
 class Timing:
-    """When the phases of an activity begin and how long they last, all in s."""
+    """Beginnings and durations of the phases of an activity, s."""
 
     seat_start: float
     seat_duration: float
@@ -47,7 +47,7 @@ class Timing:
 
 @dataclass
 class Posture:
-    """What an activity asks of the body at times t [M]."""
+    """Posture of the body in an activity at times t [M]."""
 
     # {joint name: theta [M]} in rad; joints that are not named do not turn
     angles: dict[str, Float] = field(default_factory=dict)

@@ -12,7 +12,7 @@ def progress(t: Float, start: float, duration: float) -> Float:
 
     Args:
         t: Times [...], s.
-        start: When the progress begins, s.
+        start: Beginning of the progress, s.
         duration: Time that it takes, s.
     """
     if duration == 0:

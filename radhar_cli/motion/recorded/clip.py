@@ -129,7 +129,6 @@ def make_clip(
     """Read the frames of a recording and bring them into our form.
 
     Args:
-        file: Recording.
         joints: {our name: the file's, or a list of them} where names alone do not tell, or the key
             of the joint set in whose order the joints are.
         up: Axis of the file that points up, such as "y" or "-y"; None finds it.
@@ -302,7 +301,7 @@ def _find_unit(
 
 
 def _describe_unit(leg: float, unit_of_file: float | None, taken_for: str) -> tuple[str, ...]:
-    """Say that the unit of a file makes no person; nothing where the file says none."""
+    """Describe the unit of a file that makes no person; () where the file states none."""
     if not unit_of_file:
         return ()
     return (

@@ -16,7 +16,7 @@ UNEVEN = 0.02  # share of a frame by which an instant may be off an even rate
 
 
 class Bridged(NamedTuple):
-    """Positions of joints at an even rate, and what was missing of each."""
+    """Positions of joints at an even rate, and the gaps of each."""
 
     positions: Float  # [frames, joints, 3]; NaN in gaps that are too long, and before and after
     missing: NDArray[np.int64]  # frames that are bridged, of each joint [joints]
@@ -78,6 +78,6 @@ def _curve(t: Float, p: Float, grid: Float) -> Float:
 
 
 def true_runs(mask: Bool) -> list[tuple[int, int]]:
-    """Runs [first, last] of what is true in a mask."""
+    """Runs [first, last] of true values in a mask."""
     edges = np.flatnonzero(np.diff(np.concatenate([[False], mask, [False]]).astype(int)))
     return [(int(a), int(b) - 1) for a, b in zip(edges[::2], edges[1::2], strict=True)]

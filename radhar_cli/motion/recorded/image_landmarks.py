@@ -115,7 +115,7 @@ def refuse_landmarks_in_depth(p: Float, units: float, where: str) -> None:
 
 
 def describe_growth(p: Float) -> tuple[str, ...]:
-    """Say where somebody grows or shrinks, as in pixels of a person who comes nearer.
+    """Describe bones that grow or shrink, as in pixels of a person who comes nearer.
 
     Args:
         p: Positions [frames, 15, 3] in any unit.

@@ -139,7 +139,7 @@ def _fill(p: Float, known: Bool) -> Float:
 def _describe_gaps(
     file: Keypoints, numbers: list[int], missing: list[int], gaps: list[int], rate: float
 ) -> str:
-    """Say how many frames of which joints are bridged; "" where there are none."""
+    """Describe the gaps that are bridged, their frames and joints; "" without any."""
     lost = [
         (file.label(number), n, count)
         for number, n, count in zip(numbers, missing, gaps, strict=True)

@@ -79,7 +79,6 @@ def _match_names(joint_set: JointSet, numbers: Mapping[str, int]) -> dict[int, i
     """Joints of a set that a file has: {number in the set: number in the file}.
 
     Args:
-        joint_set: The set.
         numbers: {canonical name: number} of the file's joints.
     """
     matches, used = dict[int, int](), set[int]()

@@ -42,7 +42,7 @@ def find_poses_apart(p: Float, rate: float, metres: float) -> tuple[int, int, tu
         metres: Length of their unit.
 
     Returns:
-        First and last frame of the movement, and what there is to say of those that are left out.
+        First and last frame of the movement, and remarks on the frames that are left out.
     """
     first, after = _held_frames(p * metres, rate), _held_frames(p[::-1] * metres, rate)
     if len(p) - first - after < MIN_FRAMES:
@@ -82,7 +82,7 @@ def bridge_jumps(p: Float, rate: float, metres: float) -> tuple[Float, Bool]:
 
 
 def describe_jumps(is_away: Bool, rate: float) -> tuple[str, ...]:
-    """Say how many frames are bridged in which of the thirteen joints.
+    """Describe the frames that are bridged, and the joints that jump in them; () without any.
 
     Args:
         is_away: Whether each joint was elsewhere [frames, joints].
@@ -105,7 +105,6 @@ def find_jumps(
     """Find seconds in which a joint is faster than people are.
 
     Args:
-        file: Recording.
         p: Positions [frames, 15, 3].
         rate: Frames per second.
         metres: Length of their unit.

@@ -44,7 +44,7 @@ class Keypoints:
         times: Instants of the frames [frames], s, from 0; None at an even rate.
         is_named: Whether the names are the file's own.
         unit: Length of a unit, m; None where the file does not say.
-        remarks: What the reader has to say of the file, in words.
+        remarks: Remarks of the reader on the file, in words.
         are_columns: Whether the numbers of a frame are a row of columns, in an order of its maker.
     """
 
@@ -149,7 +149,7 @@ def make_keypoints(
         rate: Frames per second, or None.
         times: Instants of the frames [frames] in any usual unit; None where the file has none.
         unit: Length of a unit, m, or None.
-        remarks: What there is to say of the file.
+        remarks: Remarks on the file.
 
     Raises:
         MotionFileError: Names the file and what is missing or odd.

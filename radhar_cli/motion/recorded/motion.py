@@ -234,7 +234,7 @@ class FileMotion:
         return make_interp_spline(t, p.reshape(len(p), -1), k=DEGREE)
 
     def _one_cycle_later(self, pose: Float, cycle: Cycle) -> Float:
-        """Where a pose [15, 3] of the clip is a cycle later, over the stature."""
+        """Carry a pose [15, 3] of the clip to where it is a cycle later, over the stature."""
         clip = self.clip
         begin, blend, period = (
             round(s * clip.rate) for s in (cycle.begin, cycle.blend, cycle.period)

@@ -59,7 +59,7 @@ def refuse_impossible_body(p: Float, where: str) -> None:
 
 
 def _find_odd_bone(medians: dict[tuple[str, str], float]) -> str:
-    """Say which bone is no body's, by median lengths of each bone and side; "" where none is."""
+    """Describe a bone that is no body's, by median lengths of each bone and side; or return ""."""
     leg = sum(medians[bone, side] for bone in ("thigh", "shank") for side in ("right", "left")) / 2
     if not leg > 0:
         return ""

@@ -62,7 +62,7 @@ def motion_file_error(where: str, problem: str) -> MotionFileError:
 
     Args:
         where: FILE, or FILE:LINE.
-        problem: What is wrong there, and what would be right.
+        problem: The problem there, and what would be right.
     """
     return MotionFileError(f"{where}: {problem}")
 

@@ -35,7 +35,7 @@ def undo_side_swaps(p: Float) -> tuple[Float, int]:
 
 
 def describe_side_swaps(exchanged: int) -> tuple[str, ...]:
-    """Say in how many frames limbs were exchanged; nothing of none."""
+    """Describe the frames in which limbs were exchanged, by their number; () without any."""
     if not exchanged:
         return ()
     return (f"left and right are exchanged in {exchanged} frames, which are put right",)

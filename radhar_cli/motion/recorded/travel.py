@@ -12,13 +12,13 @@ ROUNDS = 3
 
 
 def travel_by_feet(ankles: Float, rate: float) -> Float:
-    """Shifts that keep the foot on the floor where it is: who walks has one there.
+    """Shifts that keep the foot on the floor where it is: a walker has one there.
 
     A foot k at rest tells the velocity of the hips, -dr_k/dt of its ankle r_k about them. Its
     height tells first which foot that is; then both are weighted by how well they agree with the
     average velocity over a step, w_k ~ exp(-|v_k - v|^2 / 2 AGREEING^2 - z_k / HIGH), in a few
-    rounds. Who runs or jumps has no foot on the floor at times, and who lies or sits stands on
-    neither.
+    rounds. A runner or jumper has no foot on the floor at times, and a person who lies or sits
+    stands on neither.
 
     Args:
         ankles: Positions [frames, 2, 3] of both ankles about the hips, over the stature; z is up.

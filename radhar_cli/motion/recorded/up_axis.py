@@ -31,7 +31,7 @@ _AXES = [(sign, axis) for axis in range(3) for sign in (1, -1)]
 
 
 class UpAxis(NamedTuple):
-    """Axis that points up, if it is clear, and what there is to say of it."""
+    """Axis that points up, if it is clear, and a remark on it."""
 
     name: str | None  # "z", "-y", ...
     remark: str = ""  # where it is assumed

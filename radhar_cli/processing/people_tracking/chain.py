@@ -173,7 +173,6 @@ def firmware_doppler_step(board: Board, carrier: float | None = None) -> float:
     """Spacing of the Doppler bins, m/s: at the frequency N/(2 fs) after the first sample.
 
     Args:
-        board: The board.
         carrier: Another frequency, Hz; None for that.
     """
     middle = board.carrier_hz + board.slope_hz * board.samples / (2 * board.adc_rate_hz)
@@ -184,7 +183,6 @@ def as_rows(points: DetectedPoints, range_step: float, doppler_step: float) -> F
     """Write points as the rows [n, 8] of a cloud, in radhar's axes.
 
     Args:
-        points: Points of a frame.
         range_step: Spacing of the range bins, m.
         doppler_step: Spacing of the Doppler bins, m/s.
     """

@@ -87,7 +87,7 @@ def find_in_row(
 
 
 def order_of_angles(angles: int) -> Index:
-    """When each angle is looked at: the first, the last, the second, the last but one, ..."""
+    """Number the angles in the order of the search: first, last, second, last but one, ..."""
     number = np.arange(angles)
     turn: Index = np.minimum(2 * number, 2 * (angles - 1 - number) + 1)
     return turn

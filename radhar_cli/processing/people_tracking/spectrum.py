@@ -1,4 +1,4 @@
-"""Range bins of a frame: range FFT, BPM decoding, and what moves apart from what stands still."""
+"""Range bins of a frame: range FFT, BPM decoding, and moving echoes apart from static ones."""
 
 from typing import NamedTuple
 

@@ -1,4 +1,4 @@
-"""Points of what stands still: a beamformer over the mean of a frame's loops.
+"""Points of static echoes: a beamformer over the mean of a frame's loops.
 
 S = |a^H M|^2 of the mean M over all elements, at every so many directions. With noise alone these
 are single looks, and the CFAR fires all over: the path needs an echo of a room, as on the board.
@@ -14,7 +14,7 @@ from radhar_cli.radar.people_tracking import StaticSearch
 
 
 def find_static(mean: Complex, aperture: Aperture, search: StaticSearch) -> DetectedPoints:
-    """Find points of what stands still.
+    """Find points of static echoes.
 
     Args:
         mean: Mean M [bin, virtual] over the loops.

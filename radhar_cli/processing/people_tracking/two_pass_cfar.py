@@ -39,7 +39,7 @@ class Cells(NamedTuple):
 
 
 def detect_moving(power: Float, cfar: TwoPassCfar) -> Cells:
-    """Detect cells of a map of what moves, angles ascending, and bins within an angle.
+    """Detect cells of a map of moving echoes, angles ascending, and bins within an angle.
 
     Args:
         power: Power [angle, bin].
@@ -58,7 +58,7 @@ def detect_moving(power: Float, cfar: TwoPassCfar) -> Cells:
 
 
 def detect_static(power: Float, cfar: TwoPassCfar) -> Cells:
-    """Detect cells of a map of what stands still: maxima over angle and range."""
+    """Detect cells of a map of static echoes: maxima over angle and range."""
     candidates = _above_range_noise(power, cfar)
     is_kept = _is_peak(power, candidates, axis=0) & _is_peak(power, candidates, axis=1)
     if cfar.sidelobe is not None:

@@ -101,7 +101,7 @@ class Words:
 
 @dataclass(frozen=True)
 class FrameLayout:
-    """Where pulses lie in a stream of words, of which every frame may have others.
+    """Places of pulses in a stream of words, in which every frame may have further words.
 
     Attributes:
         unit: Words of a pulse of every transmitter.

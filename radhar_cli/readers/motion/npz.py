@@ -144,7 +144,7 @@ def _find_positions(archive: zipfile.ZipFile, members: Sequence[str], where: str
 
 
 def _describe_body_model(archive: zipfile.ZipFile, members: Sequence[str], where: str) -> str:
-    """Say which three lines of NumPy make joints of parameters of a body model, as AMASS has."""
+    """Describe three lines of NumPy that make joints of a body model's parameters, as AMASS has."""
     frames = _first_of(_ANGLES, members) or "poses"
     angles = _try_array(archive, frames, where) if frames in members else None
     key = _first_of(("surface_model_type", "model_type"), members)

@@ -49,7 +49,7 @@ def arrange_positions(array: NDArray[Any], names: Sequence[str] | None, where: s
 
 
 def _describe_other_axes(array: NDArray[Any], names: Sequence[str] | None) -> str:
-    """Say which axes are read, and which line of NumPy turns others, where sizes tell one."""
+    """Describe the axes that are read, and the line of NumPy that turns others to them."""
     joints = "J" if names is None else str(len(names))
     shape, turned = [*array.shape], ""
     if array.ndim == 2 and shape[0] % 3 == 0:

@@ -25,7 +25,7 @@ _WORD, _HALF = struct.Struct("<I"), struct.Struct("<H")
 
 @dataclass(frozen=True)
 class HeaderLayout:
-    """Where a header has its fields, bytes from the start of the magic word.
+    """Places of a header's fields, bytes from the start of the magic word.
 
     Attributes:
         name: Software that has it, in words.

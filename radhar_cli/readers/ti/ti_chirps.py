@@ -46,7 +46,7 @@ class ChirpProfile:
 
     @property
     def sweep(self) -> tuple[float, ...]:
-        """What of the profile decides a sampled sweep, whenever and however strong it is sent."""
+        """Numbers of the profile that decide a sampled sweep, at any time and strength."""
         ramp = self.start_ghz, self.slope_mhz_per_us, self.adc_start_us
         return (*ramp, self.samples, self.rate_ksps)
 

@@ -284,7 +284,7 @@ def lines_of_detection(lines: Iterable[CfgLine], subframe: int) -> Iterator[CfgL
 
 
 def describe_missing(name: str, example: str) -> str:
-    """Say that a command is missing, and which line would do."""
+    """Describe a missing command, with a line that would do."""
     return f"{name} is missing; a line that would do: {example}"
 
 

@@ -50,7 +50,7 @@ def last_lines(lines: Iterable[CfgLine], subframe: int = 0) -> Lines:
 
 
 def reasons_against(line_of: Lines, family: Family, others: Lines, bins: int) -> tuple[str, ...]:
-    """Say why the chain of a family does not run: commands that it lacks, or has otherwise.
+    """List reasons why the chain of a family does not run: commands missing, or otherwise.
 
     Args:
         line_of: Line of each command that sets the detection; other families' do not count.
@@ -93,7 +93,7 @@ def _range_cfars(line_of: Lines, family: Family) -> list[tuple[CfgLine, TwoPassC
 
 
 def _describe_mirror(line: CfgLine, cfar: TwoPassCfar, bins: int) -> str:
-    """Say that a CFAR reads beyond its map at the last bins."""
+    """Describe the range bins left out by a CFAR that reads beyond its map."""
     window, guard, end = cfar.window[0], cfar.guard[0], cfar.skip_range[1]
     return (
         f"{line.name} leaves out so many of {bins} range bins that the firmware reads beside its "

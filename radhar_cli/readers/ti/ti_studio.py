@@ -142,7 +142,7 @@ def read_studio(path: Path) -> tuple[FrameTiming, LvdsFormat]:
 
 
 def _first_mistake(error: ValidationError) -> str:
-    """Say the key of the first value that is wrong, the value, and what would be right."""
+    """Describe the first value that is wrong, with its key and what would be right."""
     mistake = error.errors(include_url=False)[0]
     key, value = ".".join(map(str, mistake["loc"])), mistake["input"]
     right = mistake["msg"].removeprefix("Input ").removeprefix("Tuple ").partition(" after ")[0]

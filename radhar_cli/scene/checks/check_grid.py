@@ -25,7 +25,7 @@ class CheckGrid(NamedTuple):
 
     Attributes:
         times: times at which to evaluate a motion, s.
-        checked: which of them are checked.
+        checked: indices of those that are checked.
         pulses: pulses of those that are checked; the last may come after the last pulse.
     """
 
@@ -60,7 +60,6 @@ def check_grids(motion: Motion, waveform: Waveform, is_shared: bool) -> Iterator
 
     Args:
         motion: motion that is checked.
-        waveform: waveform of the radar.
         is_shared: whether times are those at which the direct engine evaluates the motion, too,
             whatever the engine, so that the same scenes are drawn.
     """

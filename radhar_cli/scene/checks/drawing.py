@@ -34,7 +34,7 @@ DRAWS_OF = {Redrawn.NOTHING: 1, Redrawn.NUMBERS: FAR_DRAWS, Redrawn.CHOICES: FAR
 def draw_valid_scene(
     config: Config, activity: Activity, index: int, attempts: int | None = None
 ) -> tuple[Scene, Flags]:
-    """Draw one sample, check it and apply `on_invalid`; return it and what to warn of.
+    """Draw one sample, check it and apply `on_invalid`; return it and its warnings.
 
     Args:
         config: config of the data set.
@@ -93,7 +93,7 @@ def is_hopeless(misses: Sequence[tuple[str, float]], draws: int) -> bool:
 
 
 class _Refusal(NamedTuple):
-    """Why one of the people cannot be where they were drawn, and what would help."""
+    """Reason why a person cannot be at the place that was drawn, and its remedy."""
 
     reason: str | None  # None where only somebody else is too near
     cure: str
@@ -148,7 +148,6 @@ def find_crowded(scene: Scene, last: int | None = None) -> int | None:
     Torsos are compared horizontally, 50 times a second.
 
     Args:
-        scene: scene of the people.
         last: number of the last one who is compared; None for all.
 
     Returns:
@@ -172,7 +171,7 @@ def find_crowded(scene: Scene, last: int | None = None) -> int | None:
 
 
 def _key_prefix(person: Person) -> str:
-    """What the keys of one of the people begin with in the config."""
+    """Return the prefix of a person's keys in the config; "" for the first person."""
     return f"people.{person.number - 1}." if person.number else ""
 
 
@@ -189,12 +188,12 @@ def _place_section(person: Person) -> str:
 
 
 def describe_crowd(number: int) -> str:
-    """Say that one of `people` comes too near to somebody."""
+    """Describe the collision of one of `people` with somebody."""
     return f"people.{number - 1} comes within {TORSOS_APART_M} m of another person"
 
 
 def _suggest_room(person: Person, check: SceneCheck) -> str:
-    """Say what would give one of the people room to move."""
+    """Name the keys that would give a person room to move."""
     prefix, section = _key_prefix(person), f"motion.{_place_section(person)}"
     keys = f"{prefix}{section}range_m and {prefix}{section}cross_range_m"
     if not check.outside[1]:
@@ -206,7 +205,7 @@ def _suggest_room(person: Person, check: SceneCheck) -> str:
 
 
 def suggest_cure(person: Person, check: SceneCheck) -> str:
-    """Say what would make another scene of this one."""
+    """Name the keys that would make another scene of this one."""
     config = person.config
     if check.outside[1] and not check.too_close:
         return _suggest_room(person, check)

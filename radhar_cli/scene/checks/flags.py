@@ -1,4 +1,4 @@
-"""Flags of a scene: what there is to warn of, and how that is said."""
+"""Flags of a scene: warnings, and their wording."""
 
 from collections.abc import Mapping
 from enum import IntFlag
@@ -18,7 +18,7 @@ FLAG_TYPE = np.uint16
 
 
 class Flags(IntFlag):
-    """What there is to warn of in a scene; FLAG_TYPE in the files of a build."""
+    """Warnings of a scene; FLAG_TYPE in the files of a build."""
 
     WALL = 1
     HALF_BAND = 2
@@ -79,7 +79,7 @@ WORDING = {
 
 
 def describe_flag(flag: Flags, config: Config | None) -> str:
-    """Say what a flag means, of scenes of a config where there is one."""
+    """Describe the warning of a flag, for scenes of a config where there is one."""
     radar = None if config is None else config.radar
     if flag is Flags.ALIASING and isinstance(radar, ArrayRadar):
         turns = len(radar.timing.order) > 1
@@ -92,7 +92,7 @@ def describe_flag(flag: Flags, config: Config | None) -> str:
 def describe_flags(
     counts: Mapping[Flags, int], recordings: int, config: Config | None = None
 ) -> list[dict[str, Any]]:
-    """Say what there is to warn of: [{kind, recordings, message}].
+    """Describe the warnings of flags: [{kind, recordings, message}].
 
     Args:
         counts: number of recordings with each flag.

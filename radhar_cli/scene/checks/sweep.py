@@ -8,7 +8,7 @@ from radhar_cli.scene.scene import nominal_scene
 
 
 def sweep_shift(waveform: Waveform) -> float:
-    """How far motion within a sweep moves the echo of 1 m/s, m (that is, s): (fc + B)/K.
+    """Compute the shift of the echo of 1 m/s by motion within a sweep, m (that is, s): (fc + B)/K.
 
     The beat of tau + 2 v t/c at the middle of the sweep, t = T/2, is that of the range where the
     sweep begins and v (fc + K T)/K: the Doppler of the mid frequency, v (fc + B/2)/K, and v T/2
@@ -18,7 +18,7 @@ def sweep_shift(waveform: Waveform) -> float:
 
 
 def describe_slow_sweep(config: Config) -> str:
-    """Say how far frozen positions leave echoes from where they belong, and the remedies."""
+    """Describe the shift of echoes in sweeps with frozen positions, and its remedies."""
     radar = config.radar
     w = waveform_of(nominal_scene(config, config.chosen_activities[0]))
     has_steps = isinstance(radar, Steps)

@@ -42,7 +42,7 @@ class Approach(NamedTuple):
         distance: distance, m.
         joint: name of the scatterer.
         antenna: transmitter or receiver.
-        time: when, s.
+        time: time of it, s.
     """
 
     distance: float
@@ -72,7 +72,7 @@ class SceneCheck:
 
     @property
     def invalid(self) -> str | None:
-        """Why the scene lies outside the model, or None."""
+        """Reason why the scene lies outside the model, or None."""
         if self.too_close:
             c = self.closest
             return (
@@ -92,7 +92,7 @@ class SceneCheck:
 
     @property
     def miss(self) -> tuple[str, float]:
-        """What makes an invalid scene so, and by how many metres."""
+        """Cause that makes a scene invalid, and its size in metres."""
         if self.too_close:
             return "too close", MIN_DISTANCE_M - self.closest.distance
         if Flags.WALL in self.flags:
@@ -153,7 +153,7 @@ class RadarChecks(NamedTuple):
 
     @property
     def invalid(self) -> str | None:
-        """Why the scene lies outside the model, or None; names one of several radars."""
+        """Reason why the scene lies outside the model, or None; names one of several radars."""
         reason, config = self.decisive.invalid, self.scene.config
         if reason is None or not config.other_radars:
             return reason
@@ -180,7 +180,7 @@ def check_by_each_radar(scene: Scene, people: tuple[Person, ...]) -> RadarChecks
 
 @dataclass(frozen=True)
 class Surroundings:
-    """What the motion of a person is checked against.
+    """Radar, wall and room that the motion of a person is checked against.
 
     Attributes:
         antennas: antennas of the radar.
@@ -206,7 +206,7 @@ class Surroundings:
 
     @classmethod
     def of(cls, scene: Scene, person: Person) -> "Surroundings":
-        """Collect what a person of a scene is checked against."""
+        """Collect the surroundings that a person of a scene is checked against."""
         config, gate_m = scene.config, scene.config.processing.gate_m
         is_gated = config.processing.range_sum == "gated"
         has_segments = config.body.scatterers == "segments"
@@ -342,7 +342,6 @@ def _refine_nearest(
     """Find the nearest passage at every pulse where the grid cannot rule out 5 cm.
 
     Args:
-        motion: motion of the person.
         around: antennas and waveform.
         p: positions on the grid [3, I, M], m.
         pulses: pulses of the grid [M].

@@ -46,7 +46,7 @@ CHEST_M = 1.0  # height of the chest of somebody of usual stature, roughly, m
 
 
 def noise_alone(config: Config) -> list[str]:
-    """Say that nothing but noise is left of people in every map of a config.
+    """Warn that nothing but noise is left of people in every map of a config.
 
     Judged by the middle of all draws, of the first activity: by `snr_db`, or by one scatterer of
     1 m^2 in thermal noise where people begin, less what wall and beam take.
@@ -86,7 +86,7 @@ def noise_alone(config: Config) -> list[str]:
 
 
 def looks_away(config: Config) -> list[str]:
-    """Say that the beam looks away from where people begin, by the middle of all draws."""
+    """Warn that the beam looks away from where people begin, by the middle of all draws."""
     lost_db = [
         _losses_db(nominal_scene(config, activity))["the beam"]
         for activity in config.chosen_activities
@@ -106,7 +106,7 @@ _BOARD_KEYS = _KEYS | {"the beam": ["radar.yaw_deg", "radar.tilt_deg"]}
 
 
 def cell_gain_db(scene: Scene, name: str) -> float:
-    """How far the SNR of a cell that holds all of the echo exceeds that of a raw sample, dB.
+    """Compute the SNR of a cell that holds all of the echo over that of a raw sample, dB.
 
     Args:
         scene: gives radar and processing.
@@ -184,7 +184,7 @@ def chest_point(person: Person) -> Float:
 
 
 def _losses_db(scene: Scene) -> dict[str, float]:
-    """What wall and beam take of a scene's echo, both ways, dB."""
+    """Compute the losses of a scene's echo in the wall and by the beam, both ways, dB."""
     antennas, person = antennas_of(scene), scene.people[0]
     p = chest_point(person)
     left = antennas.field(p)
@@ -204,7 +204,7 @@ def _thermal_snr_db(scene: Scene) -> float:
 
 
 def _wall_loss_db(scene: Scene) -> float:
-    """What the wall of a scene takes of an echo from behind its middle, both ways, dB."""
+    """Compute the loss of an echo from behind the middle of the wall, both ways, dB."""
     wall, antennas = wall_of(scene), antennas_of(scene)
     if wall is None:
         return 0.0

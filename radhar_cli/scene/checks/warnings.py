@@ -1,4 +1,4 @@
-"""What is said of a config or a scene before anything is computed."""
+"""Warnings of a config or a scene before anything is computed."""
 
 from collections.abc import Mapping
 from typing import Any
@@ -26,12 +26,12 @@ from radhar_cli.scene.scene import Scene, nominal_scene
 
 
 def config_warnings(config: Config) -> list[str]:
-    """Say which keys and lines have no effect or alias, and whether maps are noise alone."""
+    """Warn of keys and lines without effect, of aliases, and of maps that are noise alone."""
     return [*word_warnings(config), *unused_keys(config), *warnings_of_signal(config)]
 
 
 def warnings_of_signal(config: Config) -> list[str]:
-    """Say what aliases, and whether maps are noise alone, whatever keys have no effect."""
+    """Warn of aliases, and of maps that are noise alone, whatever keys have no effect."""
     noise = noise_alone(config)
     return [
         *tone_warnings(config),
@@ -46,7 +46,7 @@ def warnings_of_signal(config: Config) -> list[str]:
 
 
 def _folding_warnings(config: Config) -> list[str]:
-    """Say that some echoes by way of faces come from beyond the ranges that the radar has."""
+    """Warn of echoes by way of faces that come from beyond the ranges that the radar has."""
     if config.room.faces is None or not config.radar.sweeps:
         return []
     farthest, reach = 0.0, 0.0
@@ -67,7 +67,7 @@ def _folding_warnings(config: Config) -> list[str]:
 
 
 def scene_warnings(scene: Scene) -> list[str]:
-    """Check one scene, which keeps 5 cm from antennas, and return what to warn of, in words."""
+    """Check one scene, which keeps 5 cm from antennas, and return its warnings, in words."""
     number = find_crowded(scene)
     if number is not None:
         raise SceneError(f"{scene.name}: {describe_crowd(number)}; {CROWDED}")
@@ -83,7 +83,7 @@ def scene_warnings(scene: Scene) -> list[str]:
 
 
 def _file_notes(scene: Scene) -> list[str]:
-    """Say what is bridged in the motion files of a scene, and what else there is to say of them."""
+    """List the gaps that are bridged in the motion files of a scene, and other remarks on them."""
     clips = [getattr(motion_of(person), "clip", None) for person in scene.people]
     return [
         f"{clip.where}: {note}"
@@ -97,10 +97,9 @@ def _file_notes(scene: Scene) -> list[str]:
 def collect_warnings(
     config: Config, counts: Mapping[Flags, int], recordings: int | None = None
 ) -> list[dict[str, Any]]:
-    """Say once per run what there is to warn of: [{kind, recordings, message}].
+    """Collect the warnings of a run, each once: [{kind, recordings, message}].
 
     Args:
-        config: config of the recordings.
         counts: number of recordings with each flag.
         recordings: number of all recordings; None for those of the config.
     """

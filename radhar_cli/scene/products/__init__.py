@@ -1,1 +1,1 @@
-"""What is computed of a scene: the table of products, their plan and its run."""
+"""Products of a scene: their table, their plan and its run."""

@@ -1,4 +1,4 @@
-"""What compiled code does for the samples of a config, or would do if it were installed."""
+"""Compiled code for the samples of a config, and the time that it saves or would save."""
 
 from radhar_cli.config.data_set import Config
 from radhar_cli.config.radar import ArrayRadar, ImpulseRadar
@@ -11,7 +11,7 @@ from radhar_cli.schema.number import support
 
 
 def describe_acceleration(config: Config) -> str | None:
-    """Say that numba compiles a part of a sample, or about what it would save.
+    """Name the version of numba that compiles a part of a sample, or the time it would save.
 
     Shares of a sample's time are those of docs/records/costs.md.
 

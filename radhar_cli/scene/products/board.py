@@ -297,7 +297,6 @@ def compute_fast_echo(channels: Sequence[PathSource], board: Board, scene: Scene
 
     Args:
         channels: paths of every virtual channel.
-        board: the board.
         scene: scene whose engine says the largest error, and what happens where it is larger.
 
     Raises:
@@ -347,9 +346,8 @@ def receive_cube(
     Args:
         echo: echo of all that moves.
         noise: noise of the samples.
-        board: the board.
         scene: scene that draws the errors.
-        faces_echo: samples [virtual, sample] of what stands still in every loop, or None.
+        faces_echo: samples [virtual, sample] of static echoes, the same in every loop, or None.
     """
     cube: Complex = echo.cube
     if faces_echo is not None:
@@ -371,7 +369,6 @@ def apply_channel_errors(cube: Complex, factors: Complex, board: Board) -> Compl
     Args:
         cube: raw samples [frame, loop, virtual, sample].
         factors: factor of each pair of transmitter and receiver [virtual].
-        board: board of the cube.
     """
     direct, crossed = factors.copy(), np.zeros_like(factors)
     if board.bpm is not None:
@@ -414,8 +411,6 @@ def make_frame_maps(
 
     Args:
         cube: raw samples [frame, loop, virtual, sample].
-        board: board of the cube.
-        kind: which maps.
         remove_mean: whether the mean over the loops of a frame is taken out.
         limits_m: nearest and farthest range that images show, m; None for all. Those of other
             quantities show all rows.
@@ -433,7 +428,6 @@ def find_points(
 
     Args:
         cube: raw samples [frame, loop, virtual, sample].
-        board: board of the cube.
         radar: radar of the board, whose .cfg may set firmware and a box of the room.
         settings: chain, and what of its points is kept.
         detection: settings of an out-of-box demo's .cfg.
@@ -468,14 +462,13 @@ def compute_range_bins(
 
     Args:
         cube: raw samples [frame, loop, virtual, sample].
-        board: board of the cube.
         canceller: canceller of every channel.
         window: window over the samples of a chirp.
 
     Returns:
         The bins [virtual, bin, pulse].
 
-    Raw samples go through the canceller, not bins: nothing is left then of what stands still. Sum
+    Raw samples go through the canceller, not bins: nothing is left then of static echoes. Sum
     and difference of two transmitters that send together have the power of the two.
     """
     scale = board.signs.copy()

@@ -25,7 +25,7 @@ class Skeletons(NamedTuple):
     """Joints of everybody in the middle of each frame's chirps, as the radar sees them.
 
     Attributes:
-        positions: positions [frame, person, joint, (ahead, left, up)], m; NaN of who is absent.
+        positions: positions [frame, person, joint, (ahead, left, up)], m; NaN of an absent person.
         velocities: velocities of the same shape, m/s.
         names: names of the joints.
     """
@@ -53,7 +53,6 @@ def locate_skeletons(scene: Scene, motions: tuple[Motion, ...], board: Board) ->
     In an empty scene all are NaN.
 
     Args:
-        scene: what is simulated.
         motions: motions of its people, or of parts of one; the first names the joints.
         board: board that sees them.
     """
@@ -119,7 +118,7 @@ def assign_points(cloud: Cloud, skeletons: Skeletons, board: Board, scene: Scene
 
 @dataclass(frozen=True)
 class ApparentPlaces:
-    """Where joints seem to be that the legs of transmitter and receiver see in two directions.
+    """Apparent places of joints that transmitter and receiver see in two directions.
 
     The echo by legs a, b and that by b, a have the same range and Doppler, and superpose. Neither
     is a plane wave to the virtual array, whose phases are those of the transmitters by one
@@ -142,7 +141,6 @@ class ApparentPlaces:
 
         Args:
             joints: positions [3, joint, person, frame] in the scene, m.
-            board: the board.
             legs: legs a of the transmitter, b of the receiver.
         """
         images = [leg.image(joints).T for leg in legs]  # [frame, person, joint, 3]
@@ -185,9 +183,8 @@ def _echo_of_row(tx_images: Float, rx_images: Float, board: Board, row: list[int
     """Echo [frame, person, joint, element] of joints that a row of elements sees.
 
     Args:
-        tx_images: where the transmitters see the joints [frame, person, joint, 3], m.
-        rx_images: where the receivers do.
-        board: the board.
+        tx_images: places where the transmitters see joints [frame, person, joint, 3], m.
+        rx_images: places where the receivers see them.
         row: numbers of its virtual elements.
     """
     echoes = []

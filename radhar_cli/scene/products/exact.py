@@ -68,10 +68,9 @@ def compute_exact_signals(
     """Compute signals after the canceller from raw samples, in one pass.
 
     Args:
-        paths: paths of the echo.
         canceller: canceller; a `Fir` is applied to raw samples, another one to each signal.
         receiver: impairments.
-        looks: what is wanted of the echo, one look a signal.
+        looks: looks at the echo, one a signal.
         motion_in_chirp: whether paths go on moving during a chirp.
     """
     has_taps = isinstance(canceller, Fir)

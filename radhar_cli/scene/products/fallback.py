@@ -1,4 +1,4 @@
-"""Where the direct engine cannot keep the tolerance: the cube instead, or a refusal."""
+"""Scenes in which the direct engine misses the tolerance: the cube instead, or a refusal."""
 
 from math import ceil
 from typing import NamedTuple, TypeAlias
@@ -10,7 +10,7 @@ from radhar_cli.errors import SceneError
 
 
 class Fallback(NamedTuple):
-    """Why the cube made the echo instead of the direct engine."""
+    """Reason why the cube made the echo instead of the direct engine."""
 
     reason: str
 

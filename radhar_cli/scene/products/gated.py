@@ -109,7 +109,6 @@ def gate_in_windows(
     Args:
         bins: range bins after the canceller.
         frames: windows of the signal.
-        track: track of the torso.
         gate_m: half width about the torso, or nearest and farthest range, m.
     """
     assert bins.ranges is not None
@@ -127,7 +126,6 @@ def find_needed_bins(
     Args:
         gate: range bins that each frame shows.
         frames: windows of the Doppler-time map.
-        waveform: waveform of the radar.
         canceller: canceller before the frames.
         margin: pulses of the filter after it that a frame depends on.
 
@@ -150,8 +148,6 @@ def make_gated_echo(
     """Make the closed form of the range bins of a gate.
 
     Args:
-        paths: paths of the echo.
-        waveform: waveform of the radar.
         canceller: canceller after which the bins will be seen.
         gate: range bins that frames show.
         needed: bins that are needed at each pulse; None for all at all.

@@ -40,12 +40,12 @@ WINDOWS: tuple[tuple[str, MakeFrames, str], ...] = (
 
 
 class DopplerTransform(NamedTuple):
-    """How the power of a Doppler-time map is computed of a signal.
+    """Computation of the power of a Doppler-time map from a signal.
 
     Attributes:
         needs: names of its inputs: signal, windows, and of a gated map the gate.
         compute: computes the power of those, in double or (`single=True`) single precision.
-        description: what the power is of, for people.
+        description: description of the power, for people.
     """
 
     needs: tuple[str, ...]

@@ -1,4 +1,4 @@
-"""What a scene is made of: waveform, antennas, wall, motions, paths, and the torso's delay."""
+"""Parts of a scene: waveform, antennas, wall, motions, paths, and the torso's delay."""
 
 from collections.abc import Iterator
 from functools import partial
@@ -26,7 +26,7 @@ from radhar_cli.scene.scene import Scene
 
 
 def scene_products(config: Config) -> Iterator[Product]:
-    """Rows of what a scene is made of, whatever makes its echo."""
+    """Rows of the parts of a scene, for either engine."""
     needs = ("motions", "antennas", "wall", "waveform")
     through = "through the wall" if config.wall is not None else "through air"
     yield Product("waveform", ("scene",), waveform_of, "chirps and pulses")
@@ -76,10 +76,7 @@ def track_torso(
     """Compute the delay of the first person's torso at every pulse [M], s.
 
     Args:
-        motions: motions of the people.
-        antennas: antennas of the radar.
         wall: wall between, or None.
-        waveform: waveform of the radar.
         rate: rate of the knots between which delays are interpolated; None for every pulse.
     """
     torso = TorsoPath(motions[0], antennas, wall)

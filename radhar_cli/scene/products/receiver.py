@@ -1,4 +1,4 @@
-"""What a receiver of one channel does to an echo: noise, other impairments, and the canceller."""
+"""Receiver of one channel: noise, other impairments, and the canceller."""
 
 from collections.abc import Iterator
 

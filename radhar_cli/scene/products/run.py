@@ -35,7 +35,6 @@ def run(steps: Plan, inputs: Mapping[str, Any], progress: Progress = NO_PROGRESS
     """Make the products of a plan.
 
     Args:
-        steps: the plan.
         inputs: products that exist already, {name: product}.
         progress: is told of every product that is made.
     """
@@ -63,7 +62,6 @@ def record(
     """Make products of a scene, by name (`radhar_cli.scene.products.table`).
 
     Args:
-        scene: what is simulated.
         requested: names of the products.
         more: further products, or others in place of those of the same name.
         progress: is told of every product that is made.

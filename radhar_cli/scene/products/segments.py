@@ -1,4 +1,4 @@
-"""What people of a stream do from when to when, and the label of each column of an image."""
+"""Activities of people of a stream over time, and the label of each column of an image."""
 
 from collections.abc import Sequence
 from math import inf
@@ -36,7 +36,7 @@ def make_segments(scene: Scene, motions: tuple[Motion, ...]) -> Float:
 
 
 class LabelledSegment(NamedTuple):
-    """What a person does from one time to another."""
+    """Activity of a person from one time to another."""
 
     start: float  # s
     stop: float  # s
@@ -46,10 +46,9 @@ class LabelledSegment(NamedTuple):
 def segments_of(
     motion: StreamMotion, seconds: float, classes: Sequence[str]
 ) -> list[LabelledSegment]:
-    """What a person of a stream does in a recording, without gaps.
+    """List the activities of a person of a stream in a recording, without gaps.
 
     Args:
-        motion: motion of the person.
         seconds: duration of the recording, s.
         classes: names of the labels; that of keeping still stands for pauses, if it is there.
     """

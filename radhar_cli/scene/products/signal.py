@@ -54,7 +54,7 @@ def treatment_products(config: AnyConfig) -> Iterator[Product]:
 
 
 def signal_of_look(x: Complex, look: Look) -> Signal:
-    """Make the signal of one channel of what a look shows.
+    """Make the signal of one channel that a look shows.
 
     Args:
         x: samples [K, M]: K range bins, or one sum over range, at M pulses.

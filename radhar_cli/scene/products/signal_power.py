@@ -27,7 +27,7 @@ from radhar_cli.scene.scene import Scene
 
 
 class PowerSource(NamedTuple):
-    """Where P_s comes from.
+    """Source of P_s.
 
     Attributes:
         needs: names of the products that it is made from.
@@ -61,8 +61,7 @@ def power_unless_empty(
     Args:
         of_echo: P_s of the simulated echo.
         of_paths: P_s of other paths.
-        scene: what is simulated.
-        products: what `of_echo` needs, then what `of_paths` needs.
+        products: products that `of_echo` needs, then those that `of_paths` needs.
     """
     count = len(of_echo.needs)
     return of_paths.make(*products[count:]) if scene.is_empty else of_echo.make(*products[:count])
@@ -116,11 +115,10 @@ def make_snr_paths(
     In an empty scene they are those of a person who would stand there.
 
     Args:
-        scene: what is simulated; its `snr_reference` counts.
+        scene: scene with its `snr_reference`.
         motions: motions of its people, of which the first counts.
         antennas: antennas between which the paths run.
         wall: wall between, or None; left out in free space, as is the beam.
-        waveform: waveform of the radar.
         first: antennas of the first channel of an array; None where there is one channel.
     """
     if scene.config.snr_reference == "free_space":

@@ -1,4 +1,4 @@
-"""What stands still before a radar of one channel: leakage, the wall, the faces of the room.
+"""Static returns of a radar of one channel: leakage, the wall, the faces of the room.
 
 A canceller takes it out, so that only raw recordings have it, and maps where nothing is taken out.
 Boards have the faces in their samples (`board.py`), and no leakage.
@@ -31,7 +31,7 @@ NEAREST_WALL_M = 0.05
 
 @dataclass(frozen=True, eq=False)
 class StaticReturns(Impairment):
-    """What stands still, which adds the same to the samples of every pulse.
+    """Static returns, which add the same to the samples of every pulse.
 
     Attributes:
         samples: raw samples, or samples over range, of one pulse [N, 1].
@@ -52,7 +52,7 @@ def add_static_returns(
     antennas: Antennas,
     wall: Wall | None,
 ) -> tuple[Impairment, ...]:
-    """Add what stands still to the impairments of a receiver."""
+    """Add static returns to the impairments of a receiver."""
     return (*receiver, make_static_returns(scene, waveform, antennas, wall))
 
 

@@ -119,7 +119,7 @@ def _radar_products(config: Config) -> Iterator[Product]:
 
 
 def _channel_products(config: Config) -> Iterator[Product]:
-    """Rows of one channel, whatever makes its echo."""
+    """Rows of one channel, for either engine."""
     yield from window_products()
     yield from receiver_products(config)
     yield from gate_products(config)

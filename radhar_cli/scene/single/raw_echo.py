@@ -1,4 +1,4 @@
-"""Raw recording of a scene: the beat matrix, or profiles, leakage and what stands still."""
+"""Raw recording of a scene: the beat matrix, or profiles, leakage and static returns."""
 
 import numpy as np
 
@@ -27,11 +27,10 @@ def raw_echo(
     wall: Wall | None,
     receiver: tuple[Impairment, ...],
 ) -> Complex | Float:
-    """Compute the beat matrix as an ADC would record it, with leakage and what stands still.
+    """Compute the beat matrix as an ADC would record it, with leakage and static returns.
 
     Args:
         scene: the scene; its wall must keep 5 cm from the antennas' midpoint.
-        paths: paths of the body.
         waveform: chirps and pulses.
         antennas: antennas, which leak.
         wall: wall, which echoes by itself, or None.

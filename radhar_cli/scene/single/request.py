@@ -171,7 +171,6 @@ def map_names(chosen: list[str], config: Config) -> tuple[str, ...]:
 
     Args:
         chosen: names; `all` alone is every map that the radar makes.
-        config: config of the radar.
 
     Raises:
         ConfigError: there is no map of that name.

@@ -65,14 +65,14 @@ class Simulation:
     """One simulated scene.
 
     Attributes:
-        scene: what was simulated; in `scene.config` every number is fixed.
+        scene: the scene; in `scene.config` every number is fixed.
         waveform, antennas, wall: of the radar and the wall, with derived quantities.
         motion: all that moves, whatever was left out of the echo.
         joint: name of the only scatterer that was kept, or None.
         maps: {map name: PowerMap}.
         signals: {raw | compensated | denoised | compensated_denoised: Signal}.
         truth: kinematics at every pulse.
-        warnings: what lies outside the limits of the model, in words.
+        warnings: violations of the limits of the model, in words.
         seconds: {product: time it took}.
         accuracy: settings and error of the direct engine; None for the cube.
         beat: raw echo [N_ADC, M] with static leakage and wall return, with `raw`; of an impulse
@@ -155,7 +155,7 @@ def simulate(  # noqa: PLR0913 - the documented interface, whose options are tho
         index: number of the sample within its class.
         nominal: use the middle of every range instead of random draws.
         joint: keep only this scatterer of the sample's main person.
-        maps: which to compute; None for those of the config, "all" for every map that its radar
+        maps: names of the maps; None for those of the config, "all" for every map that its radar
             makes, and the cube of a board.
         raw: compute the raw beat matrix too, static returns included, and the maps of its samples.
         progress: is told of every product that is made.
@@ -174,7 +174,6 @@ def simulate_scene(request: SceneRequest, progress: Progress = NO_PROGRESS) -> S
     """Simulate the scene of a request.
 
     Args:
-        request: what to simulate.
         progress: is told of every product that is made.
 
     Raises:

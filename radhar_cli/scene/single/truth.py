@@ -1,4 +1,4 @@
-"""What really moved: positions, radial velocities, and which movement is under way."""
+"""True motion: positions, radial velocities, and the movement under way."""
 
 from collections import Counter
 from dataclasses import dataclass, field, replace
@@ -35,7 +35,7 @@ class Truth:
         doppler: -f0 dtau/dt [M, I], Hz, with the wall, before aliasing.
         phase_label: number in `phases` of the movement that is under way [M].
         phases: names of the movements within the activity.
-        hip_joints: where thighs begin, right and left [M, 2, 3], m; None where it is the hip.
+        hip_joints: places where thighs begin, right and left [M, 2, 3], m; None at the hip.
         aspect: angle [M] (rad) from where the person faces to one of several radars, positive where
             it is to their left; None with a radar alone.
     """
@@ -58,7 +58,7 @@ class PathTruth(NamedTuple):
         delay: two-way delays [I, M], s.
         amplitude: amplitudes [I, M], for unit transmit power.
         kind: faces that the transmitter's leg and the receiver's leg meet, as "floor/-" [I].
-        person: number of the person [I]; -1 is what stands in the room.
+        person: number of the person [I]; -1 is the things in the room.
         scatterer: number of the scatterer among those of the person [I].
         bounces: number of faces that both legs meet [I].
     """
@@ -105,7 +105,6 @@ def evaluate_truth(
     """Evaluate the kinematics of all scatterers of a motion.
 
     Args:
-        motion: motion of the scatterers.
         antennas: antennas that velocities and Dopplers are seen by.
         wall: wall that the Doppler includes, or None.
         waveform: waveform whose f0 scales the Doppler.

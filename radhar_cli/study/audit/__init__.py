@@ -1,1 +1,1 @@
-"""How well the class of a sample can be told from what is not its movement."""
+"""Audit of a data set: evidence beside the movement that tells the class of a sample."""

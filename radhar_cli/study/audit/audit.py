@@ -42,7 +42,7 @@ QUICK_SAMPLES = 60  # of a class
 
 @dataclass(frozen=True)
 class AuditLine:
-    """How well the class is told from one piece of evidence."""
+    """Result of the audit of one piece of evidence."""
 
     evidence: Evidence
     result: ClassShare | None  # None where it cannot be tested
@@ -62,7 +62,7 @@ class AuditLine:
 
     @property
     def verdict(self) -> str:
-        """What it means, in words."""
+        """Meaning of the result, in words."""
         if self.result is None:
             return "not tested: too few persons, recordings or samples of each class"
         if self.result.is_confounded:
@@ -85,7 +85,7 @@ class AuditLine:
 
     @property
     def cure(self) -> str:
-        """What to draw or record instead; empty where nothing is told."""
+        """Advice on data to draw or record instead; empty where nothing is told."""
         return self.evidence.cure if self.is_leak else ""
 
 
@@ -96,11 +96,11 @@ class Audit:
     Attributes:
         data: the data set.
         rows: rows from which classes were guessed.
-        held_out: what was held out whole: person, recording or sample.
+        held_out: unit that was held out whole: person, recording or sample.
         lines: a line for each piece of evidence.
         overlaps: duplicates, and persons in several splits.
         effort: seed and size of the forests.
-        warnings: what a reader should know.
+        warnings: warnings for the reader.
     """
 
     data: AuditedSet
@@ -113,7 +113,7 @@ class Audit:
 
     @property
     def sentences(self) -> list[str]:
-        """What is wrong beside the lines: laws by class, duplicates, split persons, cues."""
+        """Warnings beside the lines: laws by class, duplicates, split persons, cues."""
         return [*self.data.laws, *self.overlaps.sentences, *self.data.on_cue]
 
     def lines_above(self, share: float, parts: Sequence[EvidencePart]) -> list[AuditLine]:
@@ -144,7 +144,7 @@ def audit(
         path: dataset.h5 or its folder, a tree of images, or a CSV file with a column `class`.
         progress: is told how far it is.
         map_name: map whose images are looked at; None takes the first.
-        table: CSV file with what else is known of each sample; None for nothing.
+        table: CSV file of further columns of the samples; None for nothing.
         effort: size of the forests and seed; None is the usual one.
         max_samples: largest number of samples of a class from which it is guessed, drawn at random.
 
@@ -222,7 +222,7 @@ def _left_out(data: AuditedSet, rows: Index, group: Index) -> list[str]:
 
 @dataclass(frozen=True)
 class PictureScan:
-    """What a first look at images finds: digests, thumbnails, and where bodies are."""
+    """Results of a first look at images: digests, thumbnails, and bands where bodies are."""
 
     rows: Index  # [M] rows of the data set
     digests: list[str]  # [M]
@@ -276,12 +276,11 @@ def _guess(
     effort: Effort,
     progress: Progress,
 ) -> tuple[AuditLine, ...]:
-    """Guess the class from each piece of evidence; what is constant or all missing is left out.
+    """Guess the class from each piece of evidence; constant and empty evidence is left out.
 
     Args:
-        evidence: evidence of the samples.
         label: [N] class of each.
-        groups: numbers [N] of what is held out: usually, and where the evidence tells who it is.
+        groups: numbers [N] of the groups held out: usual ones, and where evidence tells the person.
         effort: size of the forests and seed.
         progress: is told of each piece.
     """

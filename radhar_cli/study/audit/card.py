@@ -1,4 +1,4 @@
-"""The section of a data card that says who is told apart by what, once an audit has been made."""
+"""Section of a data card with the results of its audit, once one has been made."""
 
 from math import isfinite
 from pathlib import Path

@@ -1,4 +1,4 @@
-"""What `verify` says of leaks: the scene number that tells the class best, without scikit-learn."""
+"""Leaks for `verify`: the scene number that tells the class best, without scikit-learn."""
 
 from math import sqrt
 from typing import NamedTuple
@@ -18,7 +18,7 @@ BEYOND = 4.0  # standard deviations of chance above which a share is none, of so
 
 
 class NumberShare(NamedTuple):
-    """How often the class is told from one number, mean over classes."""
+    """Share of samples whose class one number tells, mean over classes."""
 
     key: str
     share: float

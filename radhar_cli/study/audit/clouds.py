@@ -1,4 +1,4 @@
-"""What of a board's point clouds is not the movement: place, number of points, what is far off."""
+"""Evidence in a board's point clouds beside the movement: place, number of points, far points."""
 
 import numpy as np
 

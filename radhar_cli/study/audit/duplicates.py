@@ -48,7 +48,7 @@ class Pairs:
 
 @dataclass(frozen=True)
 class Overlaps:
-    """What training and test have in common, and what is twice in a data set."""
+    """Images that several splits have in common, and images that are twice in a data set."""
 
     identical: Pairs
     near: Pairs  # nearly alike, the identical ones left out
@@ -57,7 +57,7 @@ class Overlaps:
 
     @property
     def sentences(self) -> list[str]:
-        """What is wrong, in sentences; empty where nothing is."""
+        """Warnings of twins and of splits, in sentences; empty without any."""
         lines = []
         for pairs, how in ((self.identical, "identical"), (self.near, "nearly identical")):
             if pairs.count:

@@ -7,7 +7,7 @@ from radhar_cli.numerics.arrays import Float
 
 
 class EvidencePart(StrEnum):
-    """Kinds of what the class is guessed from; the value is what tables and files call it."""
+    """Kinds of evidence from which the class is guessed; the value is its name in tables."""
 
     NUMBERS = "numbers"  # of scenes
     RECORDINGS = "recordings"  # order, length, names of files, columns of a table
@@ -21,16 +21,16 @@ class Evidence:
     """Features from which the class is guessed, and what to do where that works.
 
     Attributes:
-        part: kind of what they are.
-        name: what they are, in words.
+        part: kind of the features.
+        name: name of the features, in words.
         values: [N, D]; NaN where a sample has none.
         key: config key, column of a table, or none.
-        cure: what to write, draw or record instead.
+        cure: advice on what to write, draw or record instead.
         may_be_movement: whether the movement itself shows there, so that it is no shortcut for
             sure.
         leaves_out_missing: whether samples without a value are left out, as of numbers that a
             movement does not have; else that one is missing may tell the class.
-        tells_who: whether it tells who it is, so that samples instead of persons are held out.
+        tells_who: whether it tells the person, so that samples instead of persons are held out.
         ranks: [N, D/2] of places of images, by which those with marks are chosen (`marks`).
     """
 

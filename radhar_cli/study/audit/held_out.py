@@ -1,4 +1,4 @@
-"""How often a small forest tells the class of samples that were held out, and by chance.
+"""Share of held-out samples whose class a small forest tells, and the share by chance.
 
 A number or a part of an image that has nothing to do with the movement should not tell the class: a
 network finds such shortcuts first (R. Geirhos et al., "Shortcut learning in deep neural networks",
@@ -37,7 +37,7 @@ LEAF = 3  # samples of a leaf, where classes have enough
 
 @dataclass(frozen=True)
 class Effort:
-    """How much work an audit is.
+    """Amount of work of an audit.
 
     Attributes:
         trees: number of trees of a forest; a third of them where there is a single number.
@@ -53,7 +53,7 @@ class Effort:
 
 
 class ClassShare(NamedTuple):
-    """How often the class is told, mean over classes, of samples that were held out."""
+    """Share of held-out samples whose class is told, mean over classes."""
 
     share: float
     low: float  # of 95 %

@@ -33,7 +33,7 @@ LEAST = 0.01  # variance of the mean ranks of classes, of 1/12 at the most, of a
 
 
 class MarkFeatures(NamedTuple):
-    """How far borders, columns and places [P] of one image stand out of what is beside them."""
+    """Contrasts of borders, columns and places [P] of one image to the places beside them."""
 
     differences: Float  # grey levels
     levels: Float  # of the place itself
@@ -51,7 +51,7 @@ def mark_features(levels: Levels) -> MarkFeatures:
 
 
 def _border(values: Float, width: int) -> tuple[float, float, float]:
-    """How far the first rows of values [H, W] are above those beside, their level and rank."""
+    """Measure the contrast of the first rows of values [H, W] to the next, its level and rank."""
     rows = values[: max(len(values) // PEERS, 4 * width)].mean(axis=1)
     if len(rows) < 4 * width:
         return 0.0, 0.0, 0.5
@@ -61,14 +61,14 @@ def _border(values: Float, width: int) -> tuple[float, float, float]:
 
 
 def _columns(values: Float) -> MarkFeatures:
-    """How far the columns of values [H, W] stand out of those beside them, the sharpest of each."""
+    """Measure the sharpest contrast of columns of values [H, W] to those beside, a cell each."""
     means = values.mean(axis=0)
     sharpest, level = _sharpest(_stands_out(means, 0), means, _starts(means.size), 0)
     return MarkFeatures(sharpest, level, _ranks(sharpest))
 
 
 def _places(values: Float) -> MarkFeatures:
-    """How far the sharpest place of each cell of values [H, W] stands out of its neighbours.
+    """Measure the contrast of the sharpest place of each cell of values [H, W] to its neighbours.
 
     A place counts as far as it stands out of its row and of its column, whichever is less: a steady
     line, as a body's, does not stand out of its row.
@@ -82,7 +82,7 @@ def _places(values: Float) -> MarkFeatures:
 
 
 def _stands_out(values: Float, axis: int) -> Float:
-    """How far each of the values is above the mean of those beside it along an axis."""
+    """Subtract from each of the values the mean of those beside it along an axis."""
     count = correlate1d(np.ones(values.shape), BESIDE, axis, mode="constant")
     return values - correlate1d(values, BESIDE, axis, mode="constant") / np.maximum(count, 1)
 
@@ -161,7 +161,7 @@ def mark_evidence(
 
 
 def _describe_place(place: int, size: tuple[int, int]) -> tuple[str, bool]:
-    """Where a place is, in words, and whether that is at a border."""
+    """Describe a place in words, and return whether it is at a border."""
     if place < len(BORDERS):
         return f"the {SIDES[BORDERS[place][0]]}", True
     rows, columns = (np.append(_starts(length), length).tolist() for length in size)

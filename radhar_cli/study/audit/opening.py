@@ -46,15 +46,15 @@ class AuditedSet:
         evidence: evidence of all N samples.
         images: images; None of a table alone.
         split: [N] 0 train, 1 validation, 2 test; None where it is not split.
-        person: [N] who it is; None where nobody says.
-        recording: [N] recording that the sample was cut from; None where nobody says.
-        scene: [N] fingerprint of person and motion; None where nobody says.
+        person: [N] person of the sample; None where it is not known.
+        recording: [N] recording that the sample was cut from; None where it is not known.
+        scene: [N] fingerprint of person and motion; None where it is not known.
         on_cue: sentences on onsets that do not vary.
         too_few_on_cue: sentences on those of which too few samples are there to tell.
         laws: sentences on numbers whose laws differ by class.
         has_clouds: whether the dataset.h5 holds point clouds.
         is_simulated: whether a config can be changed.
-        image: what an image of a simulated dataset.h5 shows; None of anything else.
+        image: section `image` of a simulated dataset.h5; None of anything else.
     """
 
     where: Path
@@ -89,7 +89,7 @@ def open_for_audit(path: Path, map_name: str | None, table: Path | None) -> Audi
     Args:
         path: dataset.h5 or its folder, a tree of images, or a CSV file with a column `class`.
         map_name: map whose images are looked at; None takes the first.
-        table: CSV file with what else is known of each sample; None for nothing.
+        table: CSV file of further columns of the samples; None for nothing.
 
     Raises:
         FolderError: a file cannot be used.

@@ -1,4 +1,4 @@
-"""What of an image is not the body: margins, level, size of the file, and the noise.
+"""Evidence in images beside the body: margins, level, size of the file, and the noise.
 
 Noise is what is left in the quarter of the rows that bodies reach least in the whole data set, away
 from every cell there that stands out of its row. Rows are taken one by one, as cancellers leave
@@ -67,9 +67,9 @@ def _rows_of_bands(height: int) -> list[Index]:
 
 
 def band_contrast(levels: Levels) -> Float:
-    """How far something stands out in each band of rows [SIDE] of levels [H, W].
+    """Compute the largest contrast in each band of rows [SIDE] of levels [H, W].
 
-    It stands out of the median of its row, or a whole row stands out of those around.
+    Levels are compared with the median of their row, and that with the rows around.
     """
     smooth = uniform_filter(levels.astype(np.float32), 3)
     middle = np.median(smooth, axis=1)
@@ -180,7 +180,7 @@ def picture_evidence(
         label: [N] class of each.
         size: (H, W) of the first of them.
         is_simulated: whether there is a config, in which numbers can be drawn otherwise.
-        image: what a simulated image shows, where its config is known.
+        image: section `image` of simulated images, where their config is known.
     """
     outer, first, last, far, level, file_size, noise, texture = (
         np.stack([getattr(one, name) for one in features])
@@ -221,7 +221,7 @@ def _margin(name: str, values: Float, cure: str) -> Evidence:
 
 
 def _level_cure(image: ImageConfig) -> str:
-    """What to write into a config whose images tell the class by their level.
+    """Advise on a config whose images tell the class by their level.
 
     Noise has one law for all classes in every config: its keys take none by activity.
     """

@@ -35,7 +35,7 @@ RECORD_ALIKE = "record each class at several times, in turn, for the same length
 
 @dataclass(frozen=True)
 class RecordingTable:
-    """A table of what is known of samples: texts by column [N], "" where nothing is said."""
+    """A table of samples: texts by column [N], "" where a cell is empty."""
 
     path: Path
     columns: dict[str, list[str]]
@@ -178,7 +178,7 @@ def name_evidence(files: Sequence[Path]) -> list[Evidence]:
 
 
 def window_evidence(config: MeasuredConfig) -> list[Evidence]:
-    """Evidence of where windows of recordings come from: order, length, time, and who it is."""
+    """Evidence of the origin of windows of recordings: order, length, time, and person."""
     cuts = windows(config)
     orders = _orders([(cut.part.person, cut.number) for cut in cuts])
     columns: Mapping[str, Float] = {

@@ -48,7 +48,7 @@ def varies(values: Float) -> bool:
 
 
 def _onsets(instants: Mapping[str, Float]) -> dict[str, Float]:
-    """What was drawn for the onset, and when each sample's movement begins.
+    """Return the onsets that were drawn, and the times at which movements begin, by key.
 
     Where the data set does not say when, it is the earliest of the instants that were drawn, under
     the keys of all of them.
@@ -116,7 +116,7 @@ def _words(key: str) -> str:
 
 
 def cure_of(key: str, values: Float, has_place: bool) -> str:
-    """What to write into a config, so that a number is drawn alike for all classes.
+    """Advise on a config, so that a number is drawn alike for all classes.
 
     Args:
         key: dotted key, or several, with spaces between.
@@ -161,7 +161,7 @@ def _filled(single: Evidence) -> Float:
 
 
 class CueSentences(NamedTuple):
-    """What is said of onsets that hardly vary within a class, a sentence for each key."""
+    """Warnings of onsets that hardly vary within a class, a sentence for each key."""
 
     on_cue: list[str]
     too_few: list[str]  # of classes with too few samples to tell

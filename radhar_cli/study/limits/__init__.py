@@ -1,1 +1,1 @@
-"""How far each number of a config may go, and what happens beyond: radhar limits."""
+"""Limits of the numbers of a config, and the consequences beyond them: radhar limits."""

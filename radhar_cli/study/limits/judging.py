@@ -1,4 +1,4 @@
-"""What a config with another number comes to: refused, warned of, drawn, simulated."""
+"""Judgement of a config with another number: refused, warned of, drawn, simulated."""
 
 import re
 import warnings
@@ -42,7 +42,7 @@ Place: TypeAlias = tuple[Activity, int]  # class of a sample, and its number wit
 
 
 class Consequence(StrEnum):
-    """What happens beyond a limit."""
+    """Consequence of a number beyond a limit."""
 
     REFUSED = "refused"
     WARNED = "warned"
@@ -54,7 +54,7 @@ class Consequence(StrEnum):
 
 
 class Origin(StrEnum):
-    """What ends at a limit."""
+    """Origin of a limit."""
 
     KEY = "bounds of the key"
     MODEL = "model"
@@ -66,7 +66,7 @@ class Origin(StrEnum):
 
 @dataclass(frozen=True)
 class Judgement:
-    """What a config with another number comes to."""
+    """Consequence of another number in a config, with its origin and reason."""
 
     effect: Consequence | None = None  # what happens; None where it is as with the present number
     source: Origin = Origin.MODEL  # what has ended
@@ -84,7 +84,7 @@ class Judgement:
 
     @property
     def sentence(self) -> str:
-        """What happens, and why, as it stands in brackets."""
+        """Consequence and reason, as they stand in brackets."""
         return f"{self.reason}: {self.effect}" if self.reason else f"{self.effect}"
 
 
@@ -93,7 +93,7 @@ CLEAN = Judgement()
 
 @dataclass
 class ConfigTrial:
-    """A config file, and what it comes to with other numbers."""
+    """A config file, and its judgements with other numbers."""
 
     values: dict[str, Any]  # plain values of the file
     folder: Path

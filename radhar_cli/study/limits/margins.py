@@ -24,7 +24,7 @@ MOST_CYCLES = 1e10  # of phase, beyond which float64 is off by 1e-6 of a cycle
 
 @dataclass(frozen=True)
 class Reach:
-    """How far and how fast the joints of a scene are."""
+    """Distances and speed of the joints of a scene."""
 
     farthest: float  # largest bistatic range, half of the way from antenna to antenna, m
     nearest: float  # least distance of a joint from an antenna, m
@@ -33,7 +33,7 @@ class Reach:
 
 @dataclass(frozen=True)
 class Margin:
-    """What a config draws beside where its radar, or the arithmetic, ends."""
+    """Extreme number that a config draws, beside the limit of its radar or of the arithmetic."""
 
     name: str
     drawn: float  # the extreme of all scenes that were drawn
@@ -89,7 +89,7 @@ def margins_of(scenes: Sequence[Scene], reaches: Sequence[Reach]) -> list[Margin
 
 
 def counted_work(config: Config) -> dict[str, float]:
-    """Numbers of what a sample of a config consists of; each costs in proportion, at most.
+    """Counts of the parts of a sample of a config; each costs in proportion, at most.
 
     Pulses, samples of all chirps where they are held, windows times their length, pixels, people
     and points of bodies; of the first activity, by the middle of all draws.
@@ -122,7 +122,7 @@ def counted_work(config: Config) -> dict[str, float]:
 
 
 def work_ratio(config: Config, base: dict[str, float]) -> float:
-    """How many times the work of another config one asks for, at most, by what grows most."""
+    """Return the largest ratio of a config's counts of work to those of `base`; inf if refused."""
     try:
         counts = counted_work(config)
     except RadharError:

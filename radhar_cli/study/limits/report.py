@@ -56,7 +56,7 @@ def write_report(folder: Path, title: str, command: str, study: LimitsStudy) -> 
 
 
 def limits_numbers(study: LimitsStudy) -> dict[str, Any]:
-    """Plain values of what was found."""
+    """Plain values of the findings."""
     return {
         "margins": [vars(margin) for margin in study.margins],
         "limits": [_numbers(limit) for limit in study.limits.values()],
@@ -107,7 +107,7 @@ def terminal_lines(study: LimitsStudy) -> Iterator[str]:
 
 
 def unfinished_lines(study: LimitsStudy) -> Iterator[str]:
-    """Yield lines that name what there was no time for."""
+    """Yield lines that name the numbers for which there was no time."""
     if study.unfinished:
         yield f"not finished: {_name_keys(study.unfinished)} (--minutes, --key)"
     if study.not_simulated:
@@ -147,6 +147,6 @@ def _now(number: NumberKey) -> str:
 
 
 def _ends(margin: Margin) -> tuple[str, str]:
-    """What is drawn and its limit, with their unit."""
+    """Return the extreme that is drawn and its limit, with their unit."""
     drawn, limit = (f"{x:.3g} {margin.unit}".rstrip() for x in (margin.drawn, margin.limit))
     return drawn, limit

@@ -1,4 +1,4 @@
-"""Search for the end of what is fine: outward from a number that is, then between two."""
+"""Search for the end of the valid range: outward from a number within, then between two."""
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
@@ -19,7 +19,7 @@ Judge: TypeAlias = Callable[[float], Judgement]
 
 
 class End(NamedTuple):
-    """End of what is fine on one side of a number."""
+    """End of the valid range on one side of a number."""
 
     inside: float  # last number that is fine
     # first number beyond it that was tried and is not; None where all are fine up to the bound
@@ -29,7 +29,7 @@ class End(NamedTuple):
 
 @dataclass(frozen=True)
 class Path:
-    """Way from a number to a bound, in equal steps of what matters: ratio, distance or number."""
+    """Way from a number to a bound, in equal steps of its measure: ratio, distance or number."""
 
     start: float
     bound: float
@@ -80,7 +80,7 @@ class Path:
 
 
 def find_end(judge: Judge, path: Path) -> End:
-    """Find the end of what is fine on the way from a number, which is, to a bound.
+    """Find the end of the valid range on the way from a number within to a bound.
 
     The bound itself is tried first, with the middle of the way; otherwise the way is followed
     outward in growing steps to the first number that is not fine, and halved from there.
@@ -140,7 +140,7 @@ def halve(
 
 
 def find_end_at_zero(judge: Judge, path: Path) -> End:
-    """Find the end of what is fine as `find_end` does, where a positive number may go to 0."""
+    """Find the end of the valid range as `find_end` does, where a positive number may go to 0."""
     if path.start <= 0 or path.bound != 0 or path.is_whole:
         return find_end(judge, path)
     at_zero, tiny = judge(0.0), Path(path.start, SMALLEST * path.start)

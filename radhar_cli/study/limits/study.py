@@ -74,7 +74,7 @@ class Limit:
         return self.number.key
 
     def beyond_in_words(self, says_source: bool = False) -> str:
-        """What happens beyond, with what ends there if that is to be said."""
+        """Describe the consequence beyond, with its origin if `says_source`."""
         text = self.beyond.sentence
         if says_source and self.beyond.source is not Origin.KEY:
             text += f" [{self.beyond.source}]"
@@ -112,7 +112,7 @@ class KeySide:
 
     @property
     def first(self) -> float:
-        """End of what the config has now."""
+        """End of the range that the config draws from now."""
         return self.number.range[self.side is RangeSide.HIGH]
 
 
@@ -217,7 +217,6 @@ class LimitsStudy:
         Args:
             key: dotted key of the number.
             places: samples that are drawn; () for checks and work alone, None for checks alone.
-            number: the number.
         """
         try:
             config = self.trial.config_with(key, number)
@@ -297,7 +296,6 @@ def study_limits(
     """Find how far every number of a config may go.
 
     Args:
-        trial: the config.
         keys: dotted keys that are looked at, or sections; None for all.
         seconds: time for all of it, s; what is found by then counts.
         progress: is told of every limit.

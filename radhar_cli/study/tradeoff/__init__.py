@@ -1,1 +1,1 @@
-"""What a setting costs and what it gives: radhar tradeoff."""
+"""Costs and savings of settings: radhar tradeoff."""

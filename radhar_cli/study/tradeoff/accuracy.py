@@ -1,4 +1,4 @@
-"""What a setting costs a network: accuracy of networks that learned from its images, by seed.
+"""Accuracy of networks that learned from images of a setting, by seed.
 
 A network learns from images of the setting and is tested on images of the config as it is, of other
 scenes: the price of cheap training data on good data. Images of another size or with other axes are
@@ -50,7 +50,7 @@ TEST_BATCH = 64
 
 @dataclass(frozen=True)
 class Sizes:
-    """How much the networks of a study learn from; enough for two cores and some minutes."""
+    """Numbers of images and epochs for the networks of a study; two cores need some minutes."""
 
     learned: int = 50  # images a class, a fifth of which validate; fewer where the config has fewer
     tested: int = 25  # images a class, of each test
@@ -91,7 +91,7 @@ class AccuracyStudy:
     sizes: Sizes = Sizes()
 
     def measure(self, setting: Overrides, seeds: int, budget: Budget) -> AccuracyNumbers | None:
-        """Accuracy of networks that learned from a setting; what is there is not made again.
+        """Accuracy of networks that learned from a setting; earlier runs are not repeated.
 
         Args:
             setting: overrides of the setting; none for the config as it is.
@@ -125,7 +125,7 @@ class AccuracyStudy:
         return AccuracyNumbers(by_seed, *Interval.of(by_seed), tested_on)
 
     def obstacle(self, setting: Overrides) -> str | None:
-        """Why no network of classes can learn from a setting, in a few words; None if one can."""
+        """Return why no network of classes can learn from a setting; None if one can."""
         config = self.scenes.config(setting)
         if config.stream is not None:
             return "streams have no single class"
@@ -252,7 +252,7 @@ def measure_accuracies(
     """Train networks on data of the config as it is, and of each setting that saves time.
 
     Args:
-        study: where networks lie.
+        study: the study, with its folder of networks.
         sweep: its rows receive the accuracies.
         seeds: number of networks of a setting.
         budget: time in which networks are begun.

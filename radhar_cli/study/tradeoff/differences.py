@@ -1,4 +1,4 @@
-"""Differences of what two settings show: pictures, points, and the signals behind them."""
+"""Differences of two settings: pictures, points, and the signals behind them."""
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
@@ -51,7 +51,7 @@ class PointDifference:
 
 
 class SceneDifference(NamedTuple):
-    """What a setting changes of one scene."""
+    """Differences that a setting makes to one scene."""
 
     error_of: str  # signal whose error is measured, in words
     # its relative error, dB; -inf of none, None where there is none to compare
@@ -81,7 +81,7 @@ def relative_db(compared: Complex, exact: Complex, visible: Bool | None = None) 
     Args:
         compared: signal whose error it is.
         exact: signal that it should be.
-        visible: which of the samples count; None for all.
+        visible: mask of the samples that count; None for all.
 
     Returns:
         -inf where the two are the same, None where the exact one is 0 or of another shape.

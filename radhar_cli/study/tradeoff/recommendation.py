@@ -1,4 +1,4 @@
-"""What a sweep recommends: a reason for each row, by its time and what it changes, in a sentence.
+"""Recommendations of a sweep: a reason for each row, by its time and its changes, in a sentence.
 
 A setting saves or costs time only where the whole interval of its ratio lies beyond what the config
 as it is differs from itself.
@@ -21,7 +21,7 @@ COSTLY = 1.5  # times the time, from which on a setting is named as costly
 
 
 class Verdict(StrEnum):
-    """What the times of a row say; the value is the sentence of it."""
+    """Verdict on the time of a row; the value is the sentence of it."""
 
     SAVES = "`{name}` saves {saved} of the time and {price}."
     SAME = "`{name}` is the same signal as the default's and saves nothing."
@@ -31,7 +31,7 @@ class Verdict(StrEnum):
 
 
 class Reason(NamedTuple):
-    """Why a setting is worth taking, or not."""
+    """Reason to take a setting, or not."""
 
     row: Row
     verdict: Verdict
@@ -97,7 +97,7 @@ def recommend(sweep: Sweep, engine: EngineConfig, cores: int = 0) -> list[str]:
 
 
 def verdict_of(row: Row, blur: float, engine: EngineConfig) -> Verdict:
-    """What the time of a row says."""
+    """Judge the time of a row."""
     if row.saves(blur):
         return Verdict.SAVES
     key, _, value = row.name.partition(": ")
@@ -113,7 +113,7 @@ def verdict_of(row: Row, blur: float, engine: EngineConfig) -> Verdict:
 
 
 def _price(row: Row, default: Row | None) -> tuple[str, bool]:
-    """What a row changes, as the end of a sentence, and whether that is free."""
+    """Describe the changes of a row, as the end of a sentence; return whether they are free."""
     over_one = row.over_one
     if row.accuracy is not None and default is not None and default.accuracy is not None:
         lost = default.accuracy.loss_of(row.accuracy)
@@ -202,7 +202,7 @@ def _blur_sentence(sweep: Sweep, cores: int) -> Iterator[str]:
 
 
 def times_text(row: Row) -> str:
-    """How many times the time a row takes: 1.52, 19."""
+    """Format the time of a row over the default's: 1.52, 19."""
     ratio = row.ratio or 0.0
     return f"{ratio:.0f}" if ratio >= 10 else f"{ratio:.2f}"
 

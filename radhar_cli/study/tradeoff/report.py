@@ -121,7 +121,7 @@ class TradeoffFiles:
         }
 
     def _identity(self) -> dict[str, Any]:
-        """What rows depend on: config, versions, and whether all scenes are measured."""
+        """Return the identity of rows: config, versions, and whether all scenes are measured."""
         named = identity(self.scenes.config())
         keys = {**named["keys"], "--quick": self.scenes.quick}
         versions = {key: value for key, value in named["versions"].items() if key != "h5py"}

@@ -87,7 +87,7 @@ class ShownMap(NamedTuple):
 
 
 class Shown(NamedTuple):
-    """What people and networks see of a sample."""
+    """Pictures and points of a sample, as people and networks see them."""
 
     pictures: dict[str, ShownMap]  # {map: picture}
     cloud: Cloud | None  # points of a board's frames
@@ -142,7 +142,7 @@ class ScenePlace(NamedTuple):
 
 
 def shown_names(config: Config) -> dict[str, str]:
-    """{map: product} of what a data set of a config shows."""
+    """{map: product} of the maps of a config's data set."""
     names = {name: name if name in FRAME_MAP_KINDS else image_name(name) for name in config.maps}
     return {**names, POINTS: CLOUD} if POINTS in names else names
 

@@ -37,7 +37,7 @@ LEAST_PX = 8
 
 
 class Change(StrEnum):
-    """What another setting does to the data."""
+    """Kind of change that another setting makes to the data."""
 
     ERROR = "error"  # another computation of the same physics
     PICTURE = "another picture"  # other physics, or other parameters
@@ -77,7 +77,7 @@ class Setting:
 
     @property
     def base_name(self) -> str:
-        """Name of what its data are compared with."""
+        """Name of the setting that its data are compared with."""
         return ", ".join(one.replace("=", ": ", 1) for one in self.base) or DEFAULT
 
 

@@ -61,7 +61,7 @@ class SceneComparison:
         return raw, draw_shown(raw, self.raw.noise)
 
     def compare(self, setting: Setting) -> SceneDifference | None:
-        """Compare what a setting shows with what it should show, or with its base.
+        """Compare the pictures and points of a setting with the exact ones, or with its base.
 
         Errors are those of pictures with the same noise on both sides. Other pictures are compared
         without noise, but for masks and settings of the noise.
@@ -100,7 +100,7 @@ class TradeoffStudy:
     save: Callable[[], None]  # keeps the sweep as it is; called after every setting
 
     def run(self) -> None:
-        """Measure what is not measured yet, as far as the time goes.
+        """Measure the missing rows, as far as the time goes.
 
         Raises:
             RadharError: the config as it is cannot be simulated.
@@ -240,11 +240,9 @@ class TradeoffStudy:
 
 
 def time_setting(scenes: Scenes, setting: Setting, turn: int) -> tuple[float, float]:
-    """Time a setting and what it is compared with in turns, scene by scene: ms a sample, and ratio.
+    """Time a setting and its base in turns, scene by scene: ms a sample, and ratio.
 
     Args:
-        scenes: scenes of the sweep.
-        setting: the setting.
         turn: number of the round, which decides with which scene it begins.
     """
     places = scenes.samples()

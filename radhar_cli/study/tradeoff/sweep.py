@@ -1,4 +1,4 @@
-"""What a sweep has measured: a row for each setting, floors of images, the blur of the machine."""
+"""Measurements of a sweep: a row for each setting, floors of images, the blur of the machine."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
@@ -24,7 +24,7 @@ MANY_ROUNDS = 6  # from which on the interval leaves out the outermost ones
 
 @dataclass(frozen=True)
 class Ratio:
-    """Time of a setting over that of what it is compared with, over some rounds."""
+    """Time of a setting over that of its base, over some rounds."""
 
     sample_ms: float  # median time of a sample, ms
     value: float
@@ -34,7 +34,7 @@ class Ratio:
 
     @classmethod
     def of(cls, rounds: Sequence[tuple[float, float]]) -> "Ratio":
-        """Ratio of rounds, one at least: time of a sample, ms, and over that of what it is beside.
+        """Ratio of rounds, one at least: time of a sample, ms, and over that of its base.
 
         The interval of six rounds or more leaves out the smallest and the largest, and so on: it
         holds the median in nine of ten cases or more.
@@ -119,7 +119,7 @@ class AccuracyNumbers:
 
 @dataclass(frozen=True)
 class Row:
-    """One row of the table: what a setting costs and what it changes."""
+    """One row of the table: the cost of a setting and its changes."""
 
     group: str
     name: str  # key and value, or what is changed in words
@@ -151,7 +151,7 @@ class Row:
         level_db: float | None,
         note: str = "",
     ) -> "Row":
-        """Row of a setting: its time, differences of scenes, and what is to be known besides.
+        """Row of a setting: its time, differences of scenes, and notes.
 
         A grey level is `level_db` decibels; None of pictures that show none.
         """
@@ -209,7 +209,7 @@ class Row:
         return is_compared and is_timed and (self.ratio_high or 0) < 1 - blur
 
     def costs(self, blur: float) -> bool:
-        """Whether it takes more time than what it is compared with, beyond interval and blur."""
+        """Whether it takes more time than its base, beyond interval and blur."""
         is_timed = not self.is_default and self.rounds >= LEAST_ROUNDS
         return is_timed and (self.ratio_low or 0) > 1 + blur
 

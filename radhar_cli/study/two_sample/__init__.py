@@ -1,1 +1,1 @@
-"""How far two data sets of maps are apart, class by class."""
+"""Distance between two data sets of maps, class by class."""

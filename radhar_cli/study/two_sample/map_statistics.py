@@ -1,4 +1,4 @@
-"""What a radar engineer looks at in a Doppler-time map, in numbers."""
+"""Features of a Doppler-time map that a radar engineer looks at, in numbers."""
 
 from typing import NamedTuple
 

@@ -1,4 +1,4 @@
-"""The two data sets that are compared, and what is known of their maps."""
+"""The two data sets that are compared: images, axes, groups and scales."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace

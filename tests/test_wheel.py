@@ -1,17 +1,25 @@
-"""The wheel: all of the package and nothing else, and it works where there is no repository."""
+"""What `make dist` makes: a wheel that works where there is no repository, all sources beside it."""
 
 import os
+import re
 import shutil
 import subprocess
 import sys
+import tarfile
 import zipfile
+from email import message_from_bytes
 from pathlib import Path
+from typing import NamedTuple
 
 import pytest
 from helpers.command_line import ROOT
+from helpers.documents import blocks
 from helpers.small import small_config
 
 PACKAGE, CONFIGS = ROOT / "radhar_cli", ROOT / "configs"
+FOLDERS = (".github", "configs", "docs", "examples", "notebooks", "radhar_cli", "scripts", "tests")
+UNSHIPPED = {".gitignore", ".git"}  # a file in a working tree
+ADDRESS = "https://code.example/somebody/radhar"
 
 
 def run(*command: object, folder: Path, **more: str) -> str:
@@ -26,19 +34,68 @@ def run(*command: object, folder: Path, **more: str) -> str:
     return done.stdout
 
 
+class Built(NamedTuple):
+    """What `make dist` makes, and the files that it is made of."""
+
+    wheel: Path
+    sources: Path
+    files: set[str]
+
+
 @pytest.fixture(scope="module")
-def wheel(tmp_path_factory: pytest.TempPathFactory) -> Path:
+def built(tmp_path_factory: pytest.TempPathFactory) -> Built:
     """Built of what git would give, as a folder of an earlier build could lend it old modules."""
-    source, out = tmp_path_factory.mktemp("source"), tmp_path_factory.mktemp("wheel")
-    for folder in (PACKAGE, CONFIGS):
-        ignored = shutil.ignore_patterns("__pycache__")
-        shutil.copytree(folder, source / folder.name, symlinks=True, ignore=ignored)
-    for name in ("pyproject.toml", "README.md", "LICENSE"):
-        shutil.copy(ROOT / name, source)
+    source, out = tmp_path_factory.mktemp("source"), tmp_path_factory.mktemp("dist")
+    for name in FOLDERS:
+        ignored = shutil.ignore_patterns("__pycache__", ".mypy_cache", ".hypothesis")
+        shutil.copytree(ROOT / name, source / name, symlinks=True, ignore=ignored)
+    for path in ROOT.iterdir():
+        if path.is_file() and path.name not in UNSHIPPED and not path.name.startswith(".dmypy"):
+            shutil.copy(path, source)
+    files = {
+        str(path.relative_to(source))
+        for path in source.rglob("*")
+        if path.is_file() and "presets" not in path.parts
+    }
     build = (sys.executable, "-m", "build", "--no-isolation", "-o", out, source)
-    run(*build, folder=source)  # the archive of sources first, the wheel out of it
-    (built,) = out.glob("*.whl")
-    return built
+    # The archive of sources first, the wheel out of it.
+    run(*build, folder=source, RADHAR_REPOSITORY=ADDRESS)
+    (wheel,), (sources,) = out.glob("*.whl"), out.glob("*.tar.gz")
+    return Built(wheel, sources, files)
+
+
+@pytest.fixture(scope="module")
+def wheel(built: Built) -> Path:
+    return built.wheel
+
+
+def test_the_archive_of_sources_holds_tests_documents_and_all_else(built: Built) -> None:
+    """All but what git and its host alone need, so that `make test` runs in it."""
+    with tarfile.open(built.sources) as file:
+        inside = {name.partition("/")[2] for name in file.getnames()}
+    assert {"tests/test_wheel.py", "docs/index.md", "CHANGELOG.md", "CITATION.cff"} < inside
+    assert built.files <= inside, built.files - inside
+
+
+def test_the_package_index_shows_where_everything_is(wheel: Path) -> None:
+    """The README has no link that leads nowhere outside the repository."""
+    with zipfile.ZipFile(wheel) as file:
+        metadata = next(name for name in file.namelist() if name.endswith("/METADATA"))
+        about = message_from_bytes(file.read(metadata))
+    named = dict(url.split(", ") for url in about.get_all("Project-URL", []))
+    assert named.keys() >= {"Source", "Documentation", "Issues", "Changelog", "Paper"}
+    assert named["Source"] == ADDRESS
+    tag = f"v{about['Version']}"
+    targets = re.findall(r"\]\((.+?)\)", str(about.get_payload()))
+    for target in targets:
+        assert target.startswith(("https://", "#")), target
+    ours = [target for target in targets if target.startswith(f"{ADDRESS}/")]
+    assert any(target.startswith(f"{ADDRESS}/raw/{tag}/docs/images/") for target in ours)
+    for target in ours:
+        path = re.sub(rf"^{ADDRESS}/(raw|blob)/{tag}/|#.*", "", target)
+        assert (ROOT / path).exists(), target
+    assert about["Author"]
+    assert about["Keywords"]
 
 
 def test_the_wheel_holds_the_package_and_nothing_else(wheel: Path) -> None:
@@ -87,12 +144,12 @@ def test_it_works_without_the_repository(wheel: Path, tmp_path: Path) -> None:
 
 
 @pytest.mark.slow
-def test_it_works_in_an_empty_environment(wheel: Path, tmp_path: Path) -> None:
-    """Fetches what it depends on: the only test that needs a network."""
+def test_it_works_in_an_empty_environment(built: Built, tmp_path: Path) -> None:
+    """Wheel, then archive of sources. Fetches what it depends on: the only test that does."""
     run(sys.executable, "-m", "venv", "empty", folder=tmp_path)
     programs = tmp_path / "empty" / ("Scripts" if os.name == "nt" else "bin")
     pip = (programs / "python", "-m", "pip", "--disable-pip-version-check", "install", "--quiet")
-    run(*pip, "-c", ROOT / "constraints.txt", wheel, folder=tmp_path)
+    run(*pip, "-c", ROOT / "constraints.txt", built.wheel, folder=tmp_path)
     radhar = programs / "radhar"
     run(radhar, "config", "init", "mine.yaml", folder=tmp_path)
     run(radhar, "config", "show", "mine.yaml", folder=tmp_path)
@@ -100,3 +157,15 @@ def test_it_works_in_an_empty_environment(wheel: Path, tmp_path: Path) -> None:
     run(radhar, "generate", "small.yaml", "-o", "set", "--jobs", 1, folder=tmp_path)
     assert "synthesised again" in run(radhar, "verify", "set", "--samples", 1, folder=tmp_path)
     assert "no torch" in run(radhar, "--version", folder=tmp_path)
+    (snippet,) = (one.text for one in blocks(ROOT / "README.md") if one.language == "python")
+    said = run(programs / "python", "-c", snippet, folder=tmp_path)
+    assert said.startswith("(60, 64, 64)")
+    done = subprocess.run(
+        [radhar, "train", "set", "-o", "run"], cwd=tmp_path, capture_output=True, text=True
+    )
+    command = done.stderr.partition("not installed: ")[2]
+    assert command.startswith("empty/bin/python -m pip install "), done.stderr
+    again = ("--no-deps", "--no-build-isolation", "--force-reinstall", built.sources)
+    run(*pip, "setuptools", folder=tmp_path)
+    run(*pip, *again, folder=tmp_path)
+    assert said == run(programs / "python", "-c", snippet, folder=tmp_path)

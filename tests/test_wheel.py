@@ -1,4 +1,4 @@
-"""What `make dist` makes: a wheel that works where there is no repository, all sources beside it."""
+"""What `make dist` makes: a wheel that works without the repository, and all of its sources."""
 
 import os
 import re
@@ -7,6 +7,7 @@ import subprocess
 import sys
 import tarfile
 import zipfile
+from collections.abc import Sequence
 from email import message_from_bytes
 from pathlib import Path
 from typing import NamedTuple
@@ -17,8 +18,9 @@ from helpers.documents import blocks
 from helpers.small import small_config
 
 PACKAGE, CONFIGS = ROOT / "radhar_cli", ROOT / "configs"
-FOLDERS = (".github", "configs", "docs", "examples", "notebooks", "radhar_cli", "scripts", "tests")
-UNSHIPPED = {".gitignore", ".git"}  # a file in a working tree
+OF_WHEEL = "radhar_cli", "configs"
+BESIDE = ".github", "docs", "examples", "notebooks", "scripts", "tests"
+UNSHIPPED = {".gitignore", ".git", ".dmypy.json"}
 ADDRESS = "https://code.example/somebody/radhar"
 
 
@@ -35,46 +37,54 @@ def run(*command: object, folder: Path, **more: str) -> str:
 
 
 class Built(NamedTuple):
-    """What `make dist` makes, and the files that it is made of."""
+    """What `make dist` makes of a copy of the repository, and the files of that."""
 
     wheel: Path
     sources: Path
     files: set[str]
 
 
-@pytest.fixture(scope="module")
-def built(tmp_path_factory: pytest.TempPathFactory) -> Built:
-    """Built of what git would give, as a folder of an earlier build could lend it old modules."""
-    source, out = tmp_path_factory.mktemp("source"), tmp_path_factory.mktemp("dist")
-    for name in FOLDERS:
+def build(folder: Path, parts: Sequence[str]) -> Built:
+    """Build what git would give, as a folder of an earlier build could lend it old modules.
+
+    Args:
+        folder: where it is copied and whole.
+        parts: folders of the repository; files beside them are always there.
+    """
+    source, out = folder / "source", folder / "dist"
+    for name in parts:
         ignored = shutil.ignore_patterns("__pycache__", ".mypy_cache", ".hypothesis")
         shutil.copytree(ROOT / name, source / name, symlinks=True, ignore=ignored)
     for path in ROOT.iterdir():
-        if path.is_file() and path.name not in UNSHIPPED and not path.name.startswith(".dmypy"):
+        if path.is_file() and path.name not in UNSHIPPED:
             shutil.copy(path, source)
-    files = {
-        str(path.relative_to(source))
-        for path in source.rglob("*")
-        if path.is_file() and "presets" not in path.parts
-    }
-    build = (sys.executable, "-m", "build", "--no-isolation", "-o", out, source)
+    shipped = (path for path in source.rglob("*") if path.is_file() and "presets" not in path.parts)
+    files = {str(path.relative_to(source)) for path in shipped}
     # The archive of sources first, the wheel out of it.
-    run(*build, folder=source, RADHAR_REPOSITORY=ADDRESS)
+    command = (sys.executable, "-m", "build", "--no-isolation", "-o", out, source)
+    run(*command, folder=source, RADHAR_REPOSITORY=ADDRESS)
     (wheel,), (sources,) = out.glob("*.whl"), out.glob("*.tar.gz")
     return Built(wheel, sources, files)
 
 
 @pytest.fixture(scope="module")
-def wheel(built: Built) -> Path:
-    return built.wheel
+def wheel(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Built without the documents, which take time and are no part of it."""
+    return build(tmp_path_factory.mktemp("light"), OF_WHEEL).wheel
 
 
-def test_the_archive_of_sources_holds_tests_documents_and_all_else(built: Built) -> None:
+@pytest.fixture(scope="module")
+def whole(tmp_path_factory: pytest.TempPathFactory) -> Built:
+    return build(tmp_path_factory.mktemp("whole"), (*OF_WHEEL, *BESIDE))
+
+
+@pytest.mark.slow
+def test_the_archive_of_sources_holds_tests_documents_and_all_else(whole: Built) -> None:
     """All but what git and its host alone need, so that `make test` runs in it."""
-    with tarfile.open(built.sources) as file:
+    with tarfile.open(whole.sources) as file:
         inside = {name.partition("/")[2] for name in file.getnames()}
     assert {"tests/test_wheel.py", "docs/index.md", "CHANGELOG.md", "CITATION.cff"} < inside
-    assert built.files <= inside, built.files - inside
+    assert whole.files <= inside, whole.files - inside
 
 
 def test_the_package_index_shows_where_everything_is(wheel: Path) -> None:
@@ -117,7 +127,7 @@ def test_the_wheel_holds_the_package_and_nothing_else(wheel: Path) -> None:
         for path in CONFIGS.rglob("*")
         if path.is_file()
     }
-    assert names == ours | {"radhar_cli/py.typed", "radhar_cli/dataset/viridis.rgb"}
+    assert names == ours | {"radhar.py", "radhar_cli/py.typed", "radhar_cli/dataset/viridis.rgb"}
     assert "radhar = radhar_cli.cli:main" in points
     assert licences
     for extra in ("train", "zoo", "cluster", "dev"):
@@ -144,12 +154,12 @@ def test_it_works_without_the_repository(wheel: Path, tmp_path: Path) -> None:
 
 
 @pytest.mark.slow
-def test_it_works_in_an_empty_environment(built: Built, tmp_path: Path) -> None:
+def test_it_works_in_an_empty_environment(whole: Built, tmp_path: Path) -> None:
     """Wheel, then archive of sources. Fetches what it depends on: the only test that does."""
     run(sys.executable, "-m", "venv", "empty", folder=tmp_path)
     programs = tmp_path / "empty" / ("Scripts" if os.name == "nt" else "bin")
     pip = (programs / "python", "-m", "pip", "--disable-pip-version-check", "install", "--quiet")
-    run(*pip, "-c", ROOT / "constraints.txt", built.wheel, folder=tmp_path)
+    run(*pip, "-c", ROOT / "constraints.txt", whole.wheel, folder=tmp_path)
     radhar = programs / "radhar"
     run(radhar, "config", "init", "mine.yaml", folder=tmp_path)
     run(radhar, "config", "show", "mine.yaml", folder=tmp_path)
@@ -165,7 +175,7 @@ def test_it_works_in_an_empty_environment(built: Built, tmp_path: Path) -> None:
     )
     command = done.stderr.partition("not installed: ")[2]
     assert command.startswith("empty/bin/python -m pip install "), done.stderr
-    again = ("--no-deps", "--no-build-isolation", "--force-reinstall", built.sources)
+    again = ("--no-deps", "--no-build-isolation", "--force-reinstall", whole.sources)
     run(*pip, "setuptools", folder=tmp_path)
     run(*pip, *again, folder=tmp_path)
     assert said == run(programs / "python", "-c", snippet, folder=tmp_path)

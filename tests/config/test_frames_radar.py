@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+import yaml
 from helpers.boards import channels
 from helpers.known import A, P, V
 from hypothesis import given, settings
@@ -314,3 +315,27 @@ def test_layers_of_a_wall_are_refused_at_once_with_one_that_stands_for_them(
     assert accepted is not None
     optical = 0.025 * np.sqrt(permittivity("plasterboard", np.array(59e9))).real + 0.07
     assert one["size_m"][0] * np.sqrt(one["eps_r"]) == pytest.approx(optical, rel=1e-3)
+
+
+@pytest.mark.parametrize(
+    ("more", "size"),
+    [
+        ({}, (64, 40)),
+        ({"duration_s": 9}, (64, 90)),
+        ({"duration_s": 60}, (64, 256)),
+        ({"duration_s": 1}, (64, 32)),
+        ({"maps": ["stft", "rtm"]}, (64, 40)),
+        ({"image": {"size_px": 128}}, (128, 128)),
+        ({"image": {"dynamic_range_db": 40}}, (64, 40)),
+        ({"maps": ["stft", "range_doppler"]}, (256, 256)),
+        ({"radar": {"carrier_hz": 24e9, "prf_hz": 3500}}, (256, 256)),
+    ],
+)
+def test_images_of_frames_have_a_cell_a_pixel_if_no_size_is_given(
+    more: dict[str, Any], size: tuple[int, int]
+) -> None:
+    """But sheets of frames, and radars whose chirps go on, which have the size of all others."""
+    document = {"radar": BGT60, "maps": ["stft"], "duration_s": 4, **more}
+    config = load_config(document)
+    assert config.image.size_px == size
+    assert load_config(yaml.safe_load(as_yaml(config))).image.size_px == size

@@ -70,8 +70,8 @@ def _describe_slab(c: Request, wall: WallConfig, layers: Sequence[LayerConfig]) 
     width, height = (nominal(size) for size in wall.size_m[1:])
     return (
         f"should be left out with {c.radar.named}, whose walls are one layer: size_m: "
-        f"[{depth:.4g}, {width:g}, {height:g}], eps_r: {eps_r:.4g}, loss_tangent: {loss:.3g} delays and absorbs "
-        f"{hz / 1e9:.4g} GHz alike, without the echoes between layers"
+        f"[{depth:.4g}, {width:g}, {height:g}], eps_r: {eps_r:.4g}, loss_tangent: {loss:.3g} "
+        f"delays and absorbs {hz / 1e9:.4g} GHz alike, without the echoes between layers"
     )
 
 

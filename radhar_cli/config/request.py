@@ -328,7 +328,7 @@ class Request(Section):
             if height == width:
                 width = self.stream.columns_of(seconds)
         elif "size_px" not in self.image.model_fields_set and not {*FRAME_MAPS} & {*self.maps}:
-            height, width = _size_of_frames(self.radar, seconds) or (height, width)
+            height, width = size_of_frames(self.radar, seconds) or (height, width)
         if (height, width) != self.image.size_px:
             size = {"size_px": (height, width)}
             object.__setattr__(self, "image", _with_defaults(self.image, size))
@@ -673,7 +673,7 @@ def _fill_for_board(c: Request, radar: ArrayRadar, changed: dict[str, dict[str, 
         changed.setdefault("radar", {})[key] = number
 
 
-def _size_of_frames(radar: Radar, seconds: float) -> tuple[int, int] | None:
+def size_of_frames(radar: Radar, seconds: float) -> tuple[int, int] | None:
     """Size of a Doppler-time map of frames: a row a Doppler bin, a column a frame.
 
     Returns:

@@ -57,7 +57,7 @@ def test_repeated_set_options_change_the_config(tmp_path):
 def test_dry_run_prints_the_plan_and_writes_nothing(tmp_path):
     config = small_config(tmp_path)
     done = ok("generate", config, "-o", tmp_path / "set", "--dry-run")
-    for word in ("stage", "samples     9", "MiB", "time        about"):
+    for word in ("stage", "samples     9", "MiB", "time        about", "training    some "):
         assert word in done.stdout
     assert sorted(p.name for p in tmp_path.iterdir()) == ["small.yaml"]
 

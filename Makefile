@@ -70,6 +70,11 @@ test-all: $(DEV) $(LEARN) ## The same with every test at full size, in thirty mi
 site: $(DEV) ## Build the documentation into build/site
 	$(BIN)/python -m mkdocs build --strict
 
+.PHONY: dist
+dist: $(DEV) ## Build the wheel and the archive of sources into dist
+	rm -rf dist
+	$(BIN)/python -m build --no-isolation
+
 .PHONY: bench
 bench: $(DEV) ## Measure speed and memory (about fifteen minutes, on a quiet machine)
 	$(BIN)/python scripts/bench_generate.py
@@ -78,4 +83,4 @@ bench: $(DEV) ## Measure speed and memory (about fifteen minutes, on a quiet mac
 
 .PHONY: clean
 clean: ## Remove the environment, caches and the demo data set
-	rm -rf $(VENV) build datasets/quickstart .pytest_cache .mypy_cache .ruff_cache .hypothesis *.egg-info
+	rm -rf $(VENV) build dist datasets/quickstart .pytest_cache .mypy_cache .ruff_cache .hypothesis *.egg-info

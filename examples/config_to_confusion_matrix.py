@@ -3,7 +3,7 @@
     python examples/config_to_confusion_matrix.py [FOLDER]
 
 Three classes, a small network, about a minute; the same command resumes where it stopped.
-Needs `pip install 'radhar[train]'`.
+Needs the extra `train` (docs/guide/install.md).
 """
 
 import csv

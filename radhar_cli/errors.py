@@ -1,7 +1,11 @@
 """Errors that a user can mend; the program prints their text alone and exits with their status."""
 
 import difflib
+import shlex
+import sys
 from collections.abc import Iterable
+from importlib.util import find_spec
+from pathlib import Path
 
 INTERRUPTED, TERMINATED = 130, 143  # exit status after Ctrl-C and SIGTERM, as shells count them
 
@@ -23,9 +27,23 @@ def did_you_mean(name: str, known: Iterable[str], otherwise: str, similar: float
 PACKAGES = {"sklearn": "scikit-learn", "skimage": "scikit-image"}
 
 
+# Index of PyTorch without CUDA, which Linux gets otherwise: gigabytes.
+CPU_INDEX = "https://download.pytorch.org/whl/cpu"
+
+
 def how_to_install(*modules: str) -> str:
-    """Command that installs the packages of modules, however radhar itself was installed."""
-    return f"pip install {' '.join(PACKAGES.get(module, module) for module in modules)}"
+    """Command that installs the packages of modules beside this radhar, however it was installed.
+
+    It names packages, not extras of radhar, which no package index has, and the Python that runs:
+    `pip` alone may be another one's.
+    """
+    python = Path(sys.executable)
+    if python.is_relative_to(Path.cwd()):
+        python = python.relative_to(Path.cwd())
+    path = shlex.quote(str(python))
+    pip = f"{path} -m pip install" if find_spec("pip") else f"uv pip install --python {path}"
+    index = ["--extra-index-url", CPU_INDEX] * ("torch" in modules and sys.platform == "linux")
+    return " ".join([pip, *index, *(PACKAGES.get(module, module) for module in modules)])
 
 
 def describe_schema(version: int, known: int, otherwise: str = "") -> str:

@@ -1,17 +1,27 @@
-"""The wheel: all of the package and nothing else, and it works where there is no repository."""
+"""What `make dist` makes: a wheel that works without the repository, and all of its sources."""
 
 import os
+import re
 import shutil
 import subprocess
 import sys
+import tarfile
 import zipfile
+from collections.abc import Sequence
+from email import message_from_bytes
 from pathlib import Path
+from typing import NamedTuple
 
 import pytest
 from helpers.command_line import ROOT
+from helpers.documents import blocks
 from helpers.small import small_config
 
 PACKAGE, CONFIGS = ROOT / "radhar_cli", ROOT / "configs"
+OF_WHEEL = "radhar_cli", "configs"
+BESIDE = ".github", "docs", "examples", "notebooks", "scripts", "tests"
+UNSHIPPED = {".gitignore", ".git", ".dmypy.json"}
+ADDRESS = "https://code.example/somebody/radhar"
 
 
 def run(*command: object, folder: Path, **more: str) -> str:
@@ -26,19 +36,76 @@ def run(*command: object, folder: Path, **more: str) -> str:
     return done.stdout
 
 
+class Built(NamedTuple):
+    """What `make dist` makes of a copy of the repository, and the files of that."""
+
+    wheel: Path
+    sources: Path
+    files: set[str]
+
+
+def build(folder: Path, parts: Sequence[str]) -> Built:
+    """Build what git would give, as a folder of an earlier build could lend it old modules.
+
+    Args:
+        folder: where it is copied and whole.
+        parts: folders of the repository; files beside them are always there.
+    """
+    source, out = folder / "source", folder / "dist"
+    for name in parts:
+        ignored = shutil.ignore_patterns("__pycache__", ".mypy_cache", ".hypothesis")
+        shutil.copytree(ROOT / name, source / name, symlinks=True, ignore=ignored)
+    for path in ROOT.iterdir():
+        if path.is_file() and path.name not in UNSHIPPED:
+            shutil.copy(path, source)
+    shipped = (path for path in source.rglob("*") if path.is_file() and "presets" not in path.parts)
+    files = {str(path.relative_to(source)) for path in shipped}
+    # The archive of sources first, the wheel out of it.
+    command = (sys.executable, "-m", "build", "--no-isolation", "-o", out, source)
+    run(*command, folder=source, RADHAR_REPOSITORY=ADDRESS)
+    (wheel,), (sources,) = out.glob("*.whl"), out.glob("*.tar.gz")
+    return Built(wheel, sources, files)
+
+
 @pytest.fixture(scope="module")
 def wheel(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """Built of what git would give, as a folder of an earlier build could lend it old modules."""
-    source, out = tmp_path_factory.mktemp("source"), tmp_path_factory.mktemp("wheel")
-    for folder in (PACKAGE, CONFIGS):
-        ignored = shutil.ignore_patterns("__pycache__")
-        shutil.copytree(folder, source / folder.name, symlinks=True, ignore=ignored)
-    for name in ("pyproject.toml", "README.md", "LICENSE"):
-        shutil.copy(ROOT / name, source)
-    build = (sys.executable, "-m", "build", "--no-isolation", "-o", out, source)
-    run(*build, folder=source)  # the archive of sources first, the wheel out of it
-    (built,) = out.glob("*.whl")
-    return built
+    """Built without the documents, which take time and are no part of it."""
+    return build(tmp_path_factory.mktemp("light"), OF_WHEEL).wheel
+
+
+@pytest.fixture(scope="module")
+def whole(tmp_path_factory: pytest.TempPathFactory) -> Built:
+    return build(tmp_path_factory.mktemp("whole"), (*OF_WHEEL, *BESIDE))
+
+
+@pytest.mark.slow
+def test_the_archive_of_sources_holds_tests_documents_and_all_else(whole: Built) -> None:
+    """All but what git and its host alone need, so that `make test` runs in it."""
+    with tarfile.open(whole.sources) as file:
+        inside = {name.partition("/")[2] for name in file.getnames()}
+    assert {"tests/test_wheel.py", "docs/index.md", "CHANGELOG.md", "CITATION.cff"} < inside
+    assert whole.files <= inside, whole.files - inside
+
+
+def test_the_package_index_shows_where_everything_is(wheel: Path) -> None:
+    """The README has no link that leads nowhere outside the repository."""
+    with zipfile.ZipFile(wheel) as file:
+        metadata = next(name for name in file.namelist() if name.endswith("/METADATA"))
+        about = message_from_bytes(file.read(metadata))
+    named = dict(url.split(", ") for url in about.get_all("Project-URL", []))
+    assert named.keys() >= {"Source", "Documentation", "Issues", "Changelog", "Paper"}
+    assert named["Source"] == ADDRESS
+    tag = f"v{about['Version']}"
+    targets = re.findall(r"\]\((.+?)\)", str(about.get_payload()))
+    for target in targets:
+        assert target.startswith(("https://", "#")), target
+    ours = [target for target in targets if target.startswith(f"{ADDRESS}/")]
+    assert any(target.startswith(f"{ADDRESS}/raw/{tag}/docs/images/") for target in ours)
+    for target in ours:
+        path = re.sub(rf"^{ADDRESS}/(raw|blob)/{tag}/|#.*", "", target)
+        assert (ROOT / path).exists(), target
+    assert about["Author"]
+    assert about["Keywords"]
 
 
 def test_the_wheel_holds_the_package_and_nothing_else(wheel: Path) -> None:
@@ -60,7 +127,7 @@ def test_the_wheel_holds_the_package_and_nothing_else(wheel: Path) -> None:
         for path in CONFIGS.rglob("*")
         if path.is_file()
     }
-    assert names == ours | {"radhar_cli/py.typed", "radhar_cli/dataset/viridis.rgb"}
+    assert names == ours | {"radhar.py", "radhar_cli/py.typed", "radhar_cli/dataset/viridis.rgb"}
     assert "radhar = radhar_cli.cli:main" in points
     assert licences
     for extra in ("train", "zoo", "cluster", "dev"):
@@ -87,12 +154,12 @@ def test_it_works_without_the_repository(wheel: Path, tmp_path: Path) -> None:
 
 
 @pytest.mark.slow
-def test_it_works_in_an_empty_environment(wheel: Path, tmp_path: Path) -> None:
-    """Fetches what it depends on: the only test that needs a network."""
+def test_it_works_in_an_empty_environment(whole: Built, tmp_path: Path) -> None:
+    """Wheel, then archive of sources. Fetches what it depends on: the only test that does."""
     run(sys.executable, "-m", "venv", "empty", folder=tmp_path)
     programs = tmp_path / "empty" / ("Scripts" if os.name == "nt" else "bin")
     pip = (programs / "python", "-m", "pip", "--disable-pip-version-check", "install", "--quiet")
-    run(*pip, "-c", ROOT / "constraints.txt", wheel, folder=tmp_path)
+    run(*pip, "-c", ROOT / "constraints.txt", whole.wheel, folder=tmp_path)
     radhar = programs / "radhar"
     run(radhar, "config", "init", "mine.yaml", folder=tmp_path)
     run(radhar, "config", "show", "mine.yaml", folder=tmp_path)
@@ -100,3 +167,13 @@ def test_it_works_in_an_empty_environment(wheel: Path, tmp_path: Path) -> None:
     run(radhar, "generate", "small.yaml", "-o", "set", "--jobs", 1, folder=tmp_path)
     assert "synthesised again" in run(radhar, "verify", "set", "--samples", 1, folder=tmp_path)
     assert "no torch" in run(radhar, "--version", folder=tmp_path)
+    (snippet,) = (one.text for one in blocks(ROOT / "README.md") if one.language == "python")
+    said = run(programs / "python", "-c", snippet, folder=tmp_path)
+    assert said.startswith("(60, 64, 64)")
+    done = subprocess.run(
+        [radhar, "train", "set", "-o", "run"], cwd=tmp_path, capture_output=True, text=True
+    )
+    command = done.stderr.partition("not installed: ")[2]
+    assert command.startswith("empty/bin/python -m pip install "), done.stderr
+    run(*pip, "--no-deps", "--force-reinstall", whole.sources, folder=tmp_path)
+    assert said == run(programs / "python", "-c", snippet, folder=tmp_path)

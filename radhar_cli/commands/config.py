@@ -24,7 +24,7 @@ def group() -> typer.Typer:
 
         Example:
 
-          radhar config show configs/quickstart.yaml
+          radhar config show quickstart
         """
     )
     for command in (init, show, schema):
@@ -67,7 +67,7 @@ def init(
 
       radhar config init --radar list
     """
-    from radhar_cli.config.documents import name_of_written
+    from radhar_cli.config.documents import name_of_written, preset_called
     from radhar_cli.config.starting_file import (
         MINIMAL,
         as_commented_yaml,
@@ -102,7 +102,7 @@ def init(
     if preset is not None:
         write_text(out, of_preset(preset))
         report(file=out)
-        train = preset.removeprefix("configs/").startswith("train/")
+        train = (preset_called(preset) or "").startswith("train/")
         tell(f"  then        radhar {'train DATA --config' if train else 'generate'} {out} -o OUT")
         return
     write_text(out, MINIMAL if minimal else as_commented_yaml(_kind(train)))
@@ -166,7 +166,7 @@ def show(
 
     Example:
 
-      radhar config show configs/quickstart.yaml --set snr_db=10
+      radhar config show quickstart --set snr_db=10
     """
     from radhar_cli.config.identity import resolved, resolved_together, yaml_text
     from radhar_cli.config.reading import load_section, load_sections

@@ -79,7 +79,7 @@ def generate(
 
     Example:
 
-      radhar generate configs/paper/through_wall.yaml -o datasets/ttw_10dB --set snr_db=10 --jobs 2
+      radhar generate paper/through_wall -o datasets/ttw_10dB --set snr_db=10 --jobs 2
 
     The same command resumes an interrupted build; it does nothing if the folder is complete.
     """

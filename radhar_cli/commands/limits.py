@@ -38,9 +38,9 @@ def limits(
 
     Example:
 
-      radhar limits configs/quickstart.yaml --key radar.prf_hz --key motion.walking.speed_mps
+      radhar limits quickstart --key radar.prf_hz --key motion.walking.speed_mps
 
-      radhar limits configs/quickstart.yaml -o out/limits --minutes 5
+      radhar limits quickstart -o out/limits --minutes 5
 
     What there was no time for is named at the end.
     """

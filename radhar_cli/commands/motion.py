@@ -34,7 +34,7 @@ def motion(
 
     Example:
 
-      radhar motion configs/human/free_space_77GHz.yaml --activity walking -o walk.bvh
+      radhar motion human/free_space_77GHz --activity walking -o walk.bvh
     """
     from radhar_cli.config.reading import load_radars
     from radhar_cli.errors import ConfigError, UnfinishedError

@@ -60,7 +60,7 @@ def process(
 
     Example:
 
-      radhar process walk.h5 --config configs/paper/free_space.yaml --maps rtm,stft -o out/walk
+      radhar process walk.h5 --config paper/free_space --maps rtm,stft -o out/walk
     """
     from radhar_cli.capture import maps_file
     from radhar_cli.capture.board_frames import OF_FRAMES, frames_of_recording

@@ -117,7 +117,7 @@ def simulate(
 
     Example:
 
-      radhar simulate configs/quickstart.yaml --activity walking --seed 7 -o out/walk
+      radhar simulate quickstart --activity walking --seed 7 -o out/walk
     """
     if html:
         needs("plotly")

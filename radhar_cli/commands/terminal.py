@@ -4,6 +4,7 @@ import sys
 from collections import Counter
 from collections.abc import Mapping
 from dataclasses import fields
+from math import prod
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -14,7 +15,7 @@ from radhar_cli.files.untrusted import Closing, escaped
 from radhar_cli.processes import interrupts
 
 if TYPE_CHECKING:
-    from radhar_cli.config.data_set import AnyConfig
+    from radhar_cli.config.data_set import AnyConfig, Config
     from radhar_cli.dataset.build import BuildOutcome
     from radhar_cli.dataset.estimate import BuildPlan
     from radhar_cli.dataset.layout import Rows
@@ -160,9 +161,17 @@ def print_plan(config: "AnyConfig", jobs: int | None) -> None:
     """
     from radhar_cli.config.class_laws import laws_by_class
     from radhar_cli.config.data_set import MeasuredConfig
-    from radhar_cli.dataset.estimate import CHECK_SHARE, DRY_RUN_S, AtLeast, Estimate, plan_build
+    from radhar_cli.dataset.estimate import (
+        CHECK_SHARE,
+        DRY_RUN_S,
+        AtLeast,
+        Estimate,
+        plan_build,
+        training_seconds,
+    )
     from radhar_cli.dataset.layout import Rows
     from radhar_cli.dataset.split import split_rows, split_warnings
+    from radhar_cli.learning.settings import TrainConfig
     from radhar_cli.scene.products.acceleration import describe_acceleration
     from radhar_cli.scene.products.table import plan_images
 
@@ -176,6 +185,7 @@ def print_plan(config: "AnyConfig", jobs: int | None) -> None:
     with BarProgress() as bars:
         build_plan = plan_build(config, jobs, bars, DRY_RUN_S)
     cost, warnings = build_plan.cost, split_warnings(config, split_rows(config))
+    epochs = TrainConfig().epochs
     warnings += laws_by_class(config)
     warnings += [warning["message"] for warning in build_plan.warnings]
     report(
@@ -187,6 +197,7 @@ def print_plan(config: "AnyConfig", jobs: int | None) -> None:
         redrawn=build_plan.redrawn,
         warnings=warnings,
         **dict.fromkeys(field.name for field in fields(Estimate)) | vars(cost),
+        training_seconds=training_seconds(config, epochs),
     )
     shares = {} if isinstance(cost, AtLeast) else cost.shares
     _tell_stages({product.name: product.does for product in products}, shares)
@@ -195,6 +206,7 @@ def print_plan(config: "AnyConfig", jobs: int | None) -> None:
     checked = f"{build_plan.checked} of {len(rows)} checked"
     tell(f"scenes      {checked}: {build_plan.redrawn} drawn again{short}")
     _tell_cost(build_plan)
+    _tell_training(config, epochs)
     if acceleration := describe_acceleration(config):
         tell(f"            {acceleration}")
     for message in warnings:
@@ -244,6 +256,26 @@ def _tell_cost(build_plan: "BuildPlan") -> None:
             f"            the machine is busy: a process had {100 * cost.core_share:.0f} % of a "
             f"core; with nothing else running about {cost.seconds_alone:.1f} s"
         )
+
+
+def _tell_training(config: "Config", epochs: int) -> None:
+    """Print what training on the images of a map costs, and what it would of a radar's own size."""
+    from radhar_cli.config.request import size_of_frames
+    from radhar_cli.dataset.estimate import training_seconds
+    from radhar_cli.schema.number import nominal
+
+    seconds, size = training_seconds(config, epochs), config.image.size_px
+    tell(
+        f"training    some {_time(seconds)} of a core: {epochs} epochs of {size[0]} x {size[1]} px"
+    )
+    own = size_of_frames(config.radar, nominal(config.duration_s))
+    if own is not None and prod(own) < prod(size):
+        smaller = _time(seconds * prod(own) / prod(size))
+        tell(f"            with image.size_px={[*own]}, a pixel a cell of the stft, some {smaller}")
+
+
+def _time(seconds: float) -> str:
+    return f"{seconds:.0f} s" if seconds < 90 else f"{seconds / 60:.0f} min"
 
 
 def _mib(count: int) -> str:

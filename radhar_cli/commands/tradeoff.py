@@ -50,7 +50,7 @@ def tradeoff(
 
     Example:
 
-      radhar tradeoff configs/paper/free_space.yaml -o out/tradeoff --quick
+      radhar tradeoff paper/free_space -o out/tradeoff --quick
 
     Keep the machine idle during the run: load blurs the times, and the report says how far. What
     is measured is kept at once; the same command goes on after a stop.

@@ -19,7 +19,7 @@ from radhar_cli.config.classes import (
 )
 from radhar_cli.config.cloud import CloudConfig
 from radhar_cli.config.engine import EngineConfig
-from radhar_cli.config.image import ImageConfig
+from radhar_cli.config.image import LEAST_PX, ImageConfig
 from radhar_cli.config.maps import CADENCE_MAPS, FRAME_MAPS, MAP_NAMES, OF_FRAMES, OF_POINTS, Maps
 from radhar_cli.config.motion import MotionConfig, TimingConfig
 from radhar_cli.config.output import OutputConfig, SplitConfig
@@ -244,7 +244,7 @@ class Request(Section):
         if self.motion.model == "human" and self.image.range_limits_m is None:
             limits = {"range_limits_m": range_zone(self)}
             object.__setattr__(self, "image", _with_defaults(self.image, limits))
-        self._fill_width()
+        self._fill_size()
         return self
 
     def _filled_others(self) -> dict[str, Any]:
@@ -319,15 +319,20 @@ class Request(Section):
         copy._other_words = {}
         return copy
 
-    def _fill_width(self) -> None:
-        """Give the images of a stream the width that its time step asks for."""
+    def _fill_size(self) -> None:
+        """Give images the width of a stream's time steps, or the size of an array's own maps."""
         height, width = self.image.size_px
-        if self.stream is None or height != width or self.duration_s is None:
+        if self.duration_s is None:
             return
-        columns = self.stream.columns_of(nominal(self.duration_s))
-        object.__setattr__(
-            self, "image", _with_defaults(self.image, {"size_px": (height, columns)})
-        )
+        seconds = nominal(self.duration_s)
+        if self.stream is not None:
+            if height == width:
+                width = self.stream.columns_of(seconds)
+        elif "size_px" not in self.image.model_fields_set and not {*FRAME_MAPS} & {*self.maps}:
+            height, width = size_of_frames(self.radar, seconds) or (height, width)
+        if (height, width) != self.image.size_px:
+            size = {"size_px": (height, width)}
+            object.__setattr__(self, "image", _with_defaults(self.image, size))
 
     def of_person(self, number: int) -> Self:
         """Config of one of `people`, 1 the first: with their numbers at the top level."""
@@ -666,6 +671,20 @@ def _fill_for_board(c: Request, radar: ArrayRadar, changed: dict[str, dict[str, 
         changed.setdefault("cloud", {})["chain"] = radar.likely_chain
     for key, number in _pose_of_cfg(radar).items():
         changed.setdefault("radar", {})[key] = number
+
+
+def size_of_frames(radar: Radar, seconds: float) -> tuple[int, int] | None:
+    """Size of a Doppler-time map of frames: a row a Doppler bin, a column a frame.
+
+    Returns:
+        (height, width), each within LEAST_PX and the usual size; None of radars whose chirps go on.
+    """
+    if not isinstance(radar, ArrayRadar) or not (timing := radar.timing).frames_apart:
+        return None
+    cells = timing.n_doppler, timing.frames_in(seconds)
+    most = ImageConfig().size_px
+    height, width = (min(max(c, LEAST_PX), m) for c, m in zip(cells, most, strict=True))
+    return height, width
 
 
 @cache

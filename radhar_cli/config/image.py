@@ -25,6 +25,7 @@ DEFAULT_COLOUR_MAP = "viridis"
 
 
 MAX_SIDE_PX = 8192
+LEAST_PX = 32  # of a side that follows from a radar: less, and networks have nothing to shrink
 Pixels = Annotated[int, Field(ge=2, le=MAX_SIDE_PX, strict=True)]
 
 
@@ -105,7 +106,9 @@ class ImageConfig(Section):
             json_schema_input_type=Pixels | tuple[Pixels, Pixels],
         ),
     ] = (256, 256)
-    """Image size [height, width]; one number is a square."""
+    """Image size [height, width]; one number is a square. Not given, images of a radar with frames
+    have a row a Doppler bin and a column a frame, 32 to 256 of each, unless a map is a sheet of
+    frames."""
     kind: Literal["decibel", "cfar", "signed"] = "decibel"
     """Kind of pixels: grey levels of decibels; cfar, binary masks of what exceeds its background;
     or signed, the samples of an impulse radar's rtm, 0 in the middle."""

@@ -1,6 +1,6 @@
 """The wall in front of people, and the room around them."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from math import inf
 from typing import Annotated, Any, Generic, Literal
 
@@ -19,6 +19,8 @@ from radhar_cli.schema.number import (
     AT_LEAST_ONE,
     NOT_NEGATIVE,
     POSITIVE,
+    Number,
+    nominal,
     uniform,
     within,
 )
@@ -39,12 +41,24 @@ class LayerConfig(Section, Generic[N]):
     loss_tangent: Annotated[N, NOT_NEGATIVE, within(0, 1e12)] = default_draw(0.0)
     """Loss tangent of the layer, used with eps_r."""
 
-    def make_layer(self: "LayerConfig[float]") -> Layer:
-        """Make the layer."""
+    def make_layer(self: "LayerConfig[Number] | LayerConfig[float]") -> Layer:
+        """Make the layer; numbers that are still to be drawn are taken at their middle."""
+        thickness = nominal(self.thickness_m)
         if self.material is not None:
-            return Layer(self.thickness_m, self.material)
+            return Layer(thickness, self.material)
         assert self.eps_r is not None  # refused where the config is read
-        return Layer(self.thickness_m, self.eps_r * (1 - 1j * self.loss_tangent))
+        return Layer(thickness, nominal(self.eps_r) * (1 - 1j * nominal(self.loss_tangent)))
+
+
+def mean_slab(layers: Sequence[Layer], hz: float) -> tuple[float, float, float]:
+    """Depth (m), eps_r and loss tangent of one layer with the mean refractive index of several.
+
+    A wave of frequency `hz` is delayed and absorbed in it as in all of them.
+    """
+    depth = sum(layer.thickness for layer in layers)
+    n = sum(layer.thickness * np.sqrt(layer.eps(np.array(hz))) for layer in layers) / depth
+    eps = complex(n * n)
+    return depth, eps.real, -eps.imag / eps.real
 
 
 _NO_LAYERS = NeedsKey("wall.layers", None)
@@ -102,11 +116,7 @@ class WallConfig(Section, Generic[N]):
             layers: tuple[Layer, ...] = (Layer(depth, eps_r * (1 - 1j * loss_tangent)),)
         else:
             layers = tuple(layer.make_layer() for layer in self.layers)
-            depth = sum(layer.thickness for layer in layers)
-            middle = np.array(middle_hz)
-            n = sum(layer.thickness * np.sqrt(layer.eps(middle)) for layer in layers) / depth
-            eps = complex(n * n)
-            eps_r, loss_tangent = eps.real, -eps.imag / eps.real
+            depth, eps_r, loss_tangent = mean_slab(layers, middle_hz)
         exact = Layers(layers, parallel=polarisation == "horizontal")
         return Wall(
             center=self.center_m,

@@ -22,6 +22,7 @@ from radhar_cli.config.documents import (
     cfg_text,
     name_of_radar,
     name_of_written,
+    preset_called,
     read_on_bases,
 )
 from radhar_cli.config.identity import yaml_text
@@ -273,17 +274,17 @@ def of_preset(name: str) -> str:
     .cfg of its board stands in it as text, and of its comments the first remain.
 
     Args:
-        name: name in PRESETS, or the path of that config in a clone, `configs/human/room.yaml`.
+        name: name in PRESETS, its last part, or the path in a clone, `configs/human/room.yaml`.
 
     Raises:
-        ConfigError: there is no such config; names all of them.
+        ConfigError: there is no such config; names one like it.
     """
-    short = name.removeprefix("configs/").removesuffix(".yaml")
-    if short not in PRESETS:
-        listed = "radhar config init --preset list shows them"
-        hint = did_you_mean(short, PRESETS, f"should be one of {len(PRESETS)}; {listed}")
+    preset = preset_called(name)
+    if preset is None:
+        listed = f"should be one of {len(PRESETS)}; radhar config list shows them"
+        hint = did_you_mean(name.removeprefix("configs/"), PRESETS, listed)
         raise ConfigError(f"--preset {json.dumps(name)[:120]}: {hint}")
-    path = PRESETS[short]
+    path = PRESETS[preset]
     text = path.read_text(encoding="utf-8")
     as_written, _ = parse_yaml(text, str(path))
     radar = as_written.get("radar") or {}

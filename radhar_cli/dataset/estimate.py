@@ -7,7 +7,7 @@ an end (assembly, card). The start and the samples are measured, whatever else t
 from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
-from math import inf, sqrt
+from math import inf, prod, sqrt
 from statistics import mean, stdev
 from time import perf_counter, process_time
 from typing import Any, NamedTuple
@@ -16,9 +16,10 @@ from radhar_cli.config.data_set import Config
 from radhar_cli.dataset.batch import CHECKED_SCENES, check_scenes
 from radhar_cli.dataset.build import choose_batch_size
 from radhar_cli.dataset.identity import identity, identity_hash
-from radhar_cli.dataset.layout import Rows, row_bytes
+from radhar_cli.dataset.layout import SPLITS, Rows, row_bytes
 from radhar_cli.dataset.sample import SampleRow, synthesise
 from radhar_cli.dataset.shards import encode_shard
+from radhar_cli.dataset.split import split_rows
 from radhar_cli.dataset.trial import DRAW, WRITE, Trial, TrialSample, try_samples
 from radhar_cli.dataset.workers import cores
 from radhar_cli.errors import RadharError
@@ -35,6 +36,7 @@ PAYS_S = 0.6  # of work, from which on a worker is worth its start
 # Measured (docs/records/costs.md): processor time of a file, and of what follows the samples.
 FILE_S = 0.0003
 END_S, END_SAMPLE_S, END_BYTE_S = 0.2, 0.0003, 1e-8
+PIXEL_S = 1e-6  # of a pixel of an image that smallnet is trained on, in an epoch
 START_END = "start and end"
 # What stages are that are no products.
 STAGES = {
@@ -127,6 +129,12 @@ def jobs_that_pay(config: Config) -> int:
                 if seconds > PAYS_S:
                     break
     return max(1, min(cores(), int(len(rows) * seconds / PAYS_S)))
+
+
+def training_seconds(config: Config, epochs: int) -> float:
+    """Processor time of training the usual network on the images of a map, s, on a CPU."""
+    images = int((split_rows(config) == SPLITS.index("train")).sum())
+    return PIXEL_S * images * prod(config.image.size_px) * epochs
 
 
 def estimate(

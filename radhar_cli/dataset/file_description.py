@@ -12,14 +12,13 @@ from radhar_cli.config.image import AbsoluteReference, ImageConfig
 from radhar_cli.config.maps import FRAME_MAPS
 from radhar_cli.config.radar import ArrayRadar
 from radhar_cli.dataset import layout, scene_fields
+from radhar_cli.dataset.array_description import describe_arrays, label_axes
 from radhar_cli.dataset.column_labels import label_names
 from radhar_cli.dataset.identity import identity, versions
 from radhar_cli.dataset.layout import SPLITS, TIME, Rows
 from radhar_cli.dataset.split import persons, split_rows
 from radhar_cli.motion.skeleton import JOINTS
-from radhar_cli.processing.points import COLUMNS
 from radhar_cli.processing.scale import NOISE_PLACE
-from radhar_cli.scene.products.segments import SEGMENT_COLUMNS
 from radhar_cli.scene.products.segments import label_names as stream_label_names
 from radhar_cli.scene.room import names_of_ways
 from radhar_cli.scene.scene import nominal_scene
@@ -68,6 +67,7 @@ def describe_columns(file: h5py.File, config: AnyConfig) -> None:
     for name in config.maps:
         _describe_map(file, config, name)
         _describe_columns_of_map(file, config, name)
+    describe_arrays(file, config)
     if isinstance(config, Config):
         _describe_products(file, config)
         if config.stream is not None:
@@ -100,6 +100,7 @@ def _describe_map(file: h5py.File, config: AnyConfig, name: str) -> None:
         **({"edges": "differ from sample to sample: see /extent"} if extent is None else {}),
     }
     file[f"maps/{name}"].attrs.update(attributes)
+    label_axes(file[f"maps/{name}"], ["sample", row_quantity, column_name])
     edges = [f"{column_name} left ({column_unit})", f"{column_name} right ({column_unit})"]
     edges += [f"{row_quantity} bottom ({row_unit})", f"{row_quantity} top ({row_unit})"]
     file[f"extent/{name}"].attrs["columns"] = edges
@@ -140,6 +141,7 @@ def _describe_columns_of_map(file: h5py.File, config: AnyConfig, name: str) -> N
     """Write the attributes of a map's arrays besides its levels: power, column labels."""
     if config.output.power is not None:
         file[f"power/{name}"].attrs["unit"] = f"dB below /largest_db/{name}"
+        label_axes(file[f"power/{name}"], [one.label for one in file[f"maps/{name}"].dims])
         file[f"power/{name}"].attrs["meaning"] = "resized power, not clipped; rows as in /maps"
         file[f"largest_db/{name}"].attrs["unit"] = "dB for unit transmit power"
     if config.output.column_labels:
@@ -152,12 +154,14 @@ def _describe_stream(file: h5py.File, config: Config) -> None:
     """Write the attributes of the labels in time of streams."""
     names = stream_label_names(config)
     segments = file[f"products/{layout.SEGMENTS}"].attrs
-    segments["columns"], segments["names"] = SEGMENT_COLUMNS, names
+    segments["names"] = names
     segments["meaning"] = "label is a place in names; person 0 is the sample's main person"
     for name in config.maps:
         if (key := f"{layout.FRAME_LABEL}/{name}") in file:
             file[key].attrs["names"] = names
-            file[key].attrs["axes"] = ["sample", "person", "column of the map"]
+            axes = ["sample", "person", "column of the map"]
+            file[key].attrs["axes"] = axes
+            label_axes(file[key], axes)
             meaning = "place in names of what is under way at the middle of each column; -1 nobody"
             file[key].attrs["meaning"] = meaning
 
@@ -166,9 +170,6 @@ def _describe_products(file: h5py.File, config: Config) -> None:
     """Write the attributes of products, labels of people and slow time."""
     radar = config.radar
     ends = radar.ends_in_files.values() if isinstance(radar, ArrayRadar) else ("",)
-    for end in ends:
-        if f"products/points{end}" in file:
-            file[f"products/points{end}"].attrs["columns"] = [*COLUMNS]
     recorded = any(config.files_of(activity) is not None for activity in config.chosen_activities)
     for end in ends:
         if f"products/points_kind{end}" in file:
@@ -184,6 +185,7 @@ def _describe_products(file: h5py.File, config: Config) -> None:
         file[layout.PERSON_LABEL].attrs["meaning"] = meaning
     if config.output.slow_time:
         file["slow_time"].attrs.update({"axes": ["sample", "pulse"], "meaning": SLOW_TIME_TEXT})
+        label_axes(file["slow_time"], ["sample", "pulse"])
 
 
 def describe_file(file: h5py.File, config: AnyConfig, messages: list[dict[str, Any]]) -> None:

@@ -18,6 +18,7 @@ from radhar_cli.radar.board import Board, longest_rows
 from radhar_cli.radar.detection import Cfar, Detection
 
 COLUMNS = ("x", "y", "z", "doppler", "intensity", "snr_db", "range_index", "doppler_index")
+COLUMN_UNITS = ("m", "m", "m", "m/s", "1", "dB", "bin", "bin")
 BINS = 64  # bins of the angle FFT
 NOISE_LSB = 1.5  # rms of a Doppler cell's noise in units of the fixed-point numbers
 XYZ_STEP = 2.0**-10  # m

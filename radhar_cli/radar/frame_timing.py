@@ -106,6 +106,11 @@ class FrameTiming:
         """Whether there is time between the last chirp of a frame and the next frame."""
         return abs(self.period_s - self.loops * self.loop_s) >= 1e-9 * self.period_s
 
+    def frames_in(self, seconds: float) -> int:
+        """Number of frames of a recording of so many seconds, at least one."""
+        frames = max(int(seconds / self.period_s + 1e-9), 1)
+        return min(frames, self.frames or frames)
+
     @property
     def chirp_s(self) -> float:
         """Duration N/fs for which a chirp is sampled, s."""

@@ -28,8 +28,7 @@ def board_of(radar: ArrayRadar[float], seconds: float = 0.0) -> Board:
     timing, array = radar.timing, radar.elements
     assert array is not None  # refused where the config is read
     ends = ends_of(radar)
-    frames = max(int(seconds / timing.period_s + 1e-9), 1)
-    of_frames = vars(timing) | {"frames": min(frames, timing.frames or frames)}
+    of_frames = vars(timing) | {"frames": timing.frames_in(seconds)}
     return Board(
         **of_frames,
         array=array,

@@ -1,10 +1,13 @@
 """Radars with frames in YAML: their header, their board, and what of them does not fit together."""
 
+import json
+import re
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
+import yaml
 from helpers.boards import channels
 from helpers.known import A, P, V
 from hypothesis import given, settings
@@ -19,6 +22,7 @@ from radhar_cli.errors import ConfigError
 from radhar_cli.numerics.constants import SPEED_OF_LIGHT
 from radhar_cli.processing.frame_maps import FRAME_MAP_KINDS, range_doppler
 from radhar_cli.radar.board import Board
+from radhar_cli.radar.materials import permittivity
 from radhar_cli.scene.checks.warnings import warnings_of_signal
 from radhar_cli.scene.products.run import record
 from radhar_cli.scene.radar import antennas_of, board_of
@@ -40,6 +44,11 @@ profileCfg 0 58.5 436 0 64 0 0 15.625 1 128 2000 0 0 30
 chirpCfg 0 0 0 0 0 0 0 1
 frameCfg 0 0 64 0 100 1 0
 """
+LAYERS = [
+    {"thickness_m": 0.0125, "material": "plasterboard"},
+    {"thickness_m": 0.07, "eps_r": 1},
+    {"thickness_m": {"uniform": [0.01, 0.015]}, "material": "plasterboard"},
+]
 TWO_BY_TWO = {"tx": [[0, 0], [3, 0]], "rx": [[0, 0], [1, 0]]}
 PAIR = "tx_m: [0, 0, 1], rx_m: [0, 0, 1]"
 ALL = ["range_doppler", "range_azimuth", "range_elevation", "points"]
@@ -287,3 +296,46 @@ def test_places_in_another_unit_are_told_by_angles_that_fold() -> None:
     as_meant = BGT60 | millimetres | {"half_wavelength_m": 1e-3}
     assert not warnings_of_signal(config_of(as_meant, maps=maps))
     assert not warnings_of_signal(config_of(BGT60, maps=maps))
+
+
+@pytest.mark.parametrize("wall", [{}, {"echoes": "exact"}, {"size_m": [0.1, 5, 2.5]}])
+def test_layers_of_a_wall_are_refused_at_once_with_one_that_stands_for_them(
+    wall: dict[str, Any],
+) -> None:
+    """Whatever else the wall has; the one layer is taken, and delays a wave as the layers do."""
+    document = {"radar": BGT60, "maps": ["range_doppler"], "motion": {"place": {"range_m": 4}}}
+    with pytest.raises(ConfigError, match=r"wall\.layers = .*should be left out") as refused:
+        load_config({**document, "wall": {"layers": LAYERS, **wall}})
+    assert ".echoes" not in str(refused.value)
+    size, eps_r, loss = re.findall(
+        r"(?:size_m|eps_r|loss_tangent): (\[.*?\]|[\d.]+)", str(refused.value)
+    )
+    one = {"size_m": json.loads(size), "eps_r": float(eps_r), "loss_tangent": float(loss)}
+    accepted = load_config({**document, "wall": one}).wall
+    assert accepted is not None
+    optical = 0.025 * np.sqrt(permittivity("plasterboard", np.array(59e9))).real + 0.07
+    assert one["size_m"][0] * np.sqrt(one["eps_r"]) == pytest.approx(optical, rel=1e-3)
+
+
+@pytest.mark.parametrize(
+    ("more", "size"),
+    [
+        ({}, (64, 40)),
+        ({"duration_s": 9}, (64, 90)),
+        ({"duration_s": 60}, (64, 256)),
+        ({"duration_s": 1}, (64, 32)),
+        ({"maps": ["stft", "rtm"]}, (64, 40)),
+        ({"image": {"size_px": 128}}, (128, 128)),
+        ({"image": {"dynamic_range_db": 40}}, (64, 40)),
+        ({"maps": ["stft", "range_doppler"]}, (256, 256)),
+        ({"radar": {"carrier_hz": 24e9, "prf_hz": 3500}}, (256, 256)),
+    ],
+)
+def test_images_of_frames_have_a_cell_a_pixel_if_no_size_is_given(
+    more: dict[str, Any], size: tuple[int, int]
+) -> None:
+    """But sheets of frames, and radars whose chirps go on, which have the size of all others."""
+    document = {"radar": BGT60, "maps": ["stft"], "duration_s": 4, **more}
+    config = load_config(document)
+    assert config.image.size_px == size
+    assert load_config(yaml.safe_load(as_yaml(config))).image.size_px == size

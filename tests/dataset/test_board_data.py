@@ -87,6 +87,49 @@ def scene(folder: Path) -> Path:
     return out
 
 
+def test_arrays_say_what_they_are_as_the_frames_of_a_scene_do(data: Path, scene: Path) -> None:
+    """Labels of HDF5's own, units, and edges: half a cell beyond the first and the last value."""
+    with h5py.File(data / "dataset.h5") as file, h5py.File(scene / "scene.h5") as one:
+        for name, rows, columns in (
+            ("range_doppler", "range", "radial speed"),
+            ("range_azimuth", "range", "azimuth"),
+        ):
+            stored = file[f"products/{name}"]
+            said = stored.attrs
+            assert [axis.label for axis in stored.dims] == ["frame", rows, columns]
+            assert said["axes"].tolist() == ["frame", rows, columns]
+            for what, quantity, first, last in (
+                ("row", rows, "bottom", "top"),
+                ("column", columns, "left", "right"),
+            ):
+                values = one[f"axes/{name}/{quantity}"]
+                step = values[1] - values[0]
+                assert said[f"{what}_quantity"] == quantity
+                assert said[f"{what}_unit"] == values.attrs["unit"]
+                assert said[f"{what}_{first}"] == pytest.approx(values[0] - step / 2)
+                assert said[f"{what}_{last}"] == pytest.approx(values[-1] + step / 2)
+        points, joints = file["products/points"], file["products/skeleton_velocity"]
+        assert points.attrs["units"].tolist() == one["points"].attrs["units"].tolist()
+        assert [axis.label for axis in points.dims] == ["point", "column"]
+        assert (joints.attrs["unit"], joints.dims[2].label) == ("m/s", "joint")
+        assert [axis.label for axis in file["maps/stft"].dims] == [
+            *("sample", "Doppler frequency", "time")
+        ]
+
+
+def test_arrays_of_the_ranges_that_images_show_have_the_edges_of_their_rows(
+    folder: Path, tmp_path: Path
+) -> None:
+    """In whole cells of the axis."""
+    limits = ("--set", "image.range_limits_m=[1, 3]", "--set", "maps=[range_doppler]", "-q")
+    done("generate", folder / "config.yaml", "-o", tmp_path / "near", "--jobs", "1", *limits)
+    with h5py.File(tmp_path / "near/dataset.h5") as file:
+        said, rows = file["products/range_doppler"].attrs, file["products/range_doppler"].shape[1]
+        whole = (said["row_top"] - said["row_bottom"]) / rows
+        assert said["row_bottom"] <= 1 < said["row_bottom"] + whole
+        assert said["row_top"] - whole < 3 <= said["row_top"]
+
+
 def test_a_recording_gives_the_frames_of_its_scene(folder: Path, scene: Path) -> None:
     config, made = folder / "config.yaml", folder / "made"
     names = "stft,rtm,cube,range_doppler,range_azimuth,points"

@@ -83,7 +83,7 @@ def test_the_card_says_what_noise_alone_tells(change: str, said: bool, tmp_path:
 
 def test_the_citation_is_that_of_the_project() -> None:
     wanted = yaml.safe_load((ROOT / "CITATION.cff").read_text())
-    paper = wanted["preferred-citation"]
+    (paper,) = wanted["references"]
     who = paper["authors"][0]
     for text in (
         wanted["title"],

@@ -24,6 +24,7 @@ from radhar_cli.dataset.estimate import (
     jobs_that_pay,
     plan_build,
     scale_up,
+    training_seconds,
 )
 from radhar_cli.dataset.layout import Rows
 from radhar_cli.dataset.sample import SampleRow, synthesise
@@ -146,6 +147,18 @@ def slow_after(number, function):
         return function(*given)
 
     return slow
+
+
+def test_training_costs_as_many_pixels_as_it_sees(tmp_path):
+    """Of the images of its own part of the data set; what a pixel costs is measured elsewhere."""
+    small = load_config(small_config(tmp_path))
+    once = training_seconds(small, 1)
+    assert once > 0
+    assert training_seconds(small, 30) == pytest.approx(30 * once)
+    larger = small.replace({"image.size_px": [96, 48]})
+    assert training_seconds(larger, 1) == pytest.approx(2 * once)
+    more = small.replace({"samples_per_class": 300})
+    assert training_seconds(more, 1) == pytest.approx(300 * 0.67 / 2 * once, rel=0.01)
 
 
 def test_a_dry_run_ends_when_its_time_is_over(tmp_path, monkeypatch):

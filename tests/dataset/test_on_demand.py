@@ -164,6 +164,5 @@ def test_without_torch_samples_say_what_to_install():
         "except ImportError as error:\n"
         "    print(error)\n",
     )
-    assert (
-        done.stdout == "radhar.Samples needs PyTorch: pip install torch safetensors scikit-learn\n"
-    ), done.stderr
+    assert done.stdout.startswith("radhar.Samples needs PyTorch: "), done.stderr
+    assert done.stdout.endswith(" torch safetensors scikit-learn\n")

@@ -6,8 +6,8 @@ from typing import Any
 
 from radhar_cli.config.first_level import Request
 from radhar_cli.config.radar import ArrayRadar, ImpulseRadar
-from radhar_cli.config.room import WallConfig
-from radhar_cli.schema.number import support
+from radhar_cli.config.room import LayerConfig, WallConfig, mean_slab
+from radhar_cli.schema.number import nominal, support
 from radhar_cli.schema.section import Problem, for_activity
 
 
@@ -32,11 +32,17 @@ def _layer_problems(c: Request, wall: WallConfig) -> Iterator[Problem]:
     if (wall.layers is None) != (wall.size_m[0] is not None):
         right = "should be null with wall.layers" if wall.layers else "should be a number"
         yield Problem("wall.size_m.0", wall.size_m[0], right)
-    for number, layer in enumerate(wall.layers or ()):
+    layers = wall.layers or ()
+    for number, layer in enumerate(layers):
         forms = (layer.material is not None) + (layer.eps_r is not None)
         if forms != 1 or (layer.material and layer.loss_tangent):
             right = "should have a material, or eps_r and loss_tangent"
             yield Problem(f"wall.layers.{number}", layer.model_dump(mode="json"), right)
+            return
+    if layers and isinstance(c.radar, ArrayRadar):
+        written = [layer.material or f"eps_r {nominal(layer.eps_r):g}" for layer in layers]
+        yield Problem("wall.layers", written, _describe_slab(c, wall, layers))
+        return
     default = WallConfig()
     for key in ("eps_r", "loss_tangent") if wall.layers else ():
         if getattr(wall, key) != getattr(default, key):
@@ -55,6 +61,18 @@ def _layer_problems(c: Request, wall: WallConfig) -> Iterator[Problem]:
     elif c.engine.kind == "direct" and not isinstance(c.radar, ImpulseRadar):
         right = "should be cube with wall.echoes: exact, which the direct engine does not have"
         yield Problem("engine.kind", "direct", right)
+
+
+def _describe_slab(c: Request, wall: WallConfig, layers: Sequence[LayerConfig]) -> str:
+    """Describe the single layer that stands for the layers of a wall before an array."""
+    hz = nominal(c.radar.carrier_hz)
+    depth, eps_r, loss = mean_slab([layer.make_layer() for layer in layers], hz)
+    width, height = (nominal(size) for size in wall.size_m[1:])
+    return (
+        f"should be left out with {c.radar.named}, whose walls are one layer: size_m: "
+        f"[{depth:.4g}, {width:g}, {height:g}], eps_r: {eps_r:.4g}, loss_tangent: {loss:.3g} "
+        f"delays and absorbs {hz / 1e9:.4g} GHz alike, without the echoes between layers"
+    )
 
 
 def back_wall_problems(c: Request) -> Iterator[Problem]:

@@ -15,6 +15,7 @@ from radhar_cli.scene.scene import Scene
 from radhar_cli.scene.streams import StreamMotion
 
 SEGMENT_COLUMNS = ("start_s", "stop_s", "label", "person")
+SEGMENT_UNITS = ("s", "s", "1", "1")
 NOBODY = -1  # label where a person is not there, or of no stream
 
 

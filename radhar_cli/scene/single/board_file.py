@@ -9,7 +9,7 @@ import numpy as np
 
 from radhar_cli.config.radar import BoardRadar, Radar
 from radhar_cli.processing.frame_maps import FrameMaps
-from radhar_cli.processing.points import COLUMNS, Cloud
+from radhar_cli.processing.points import COLUMN_UNITS, COLUMNS, Cloud
 from radhar_cli.radar.board import Board
 from radhar_cli.scene.products.board_people import Skeletons
 from radhar_cli.scene.single.single_precision import in_single
@@ -97,7 +97,7 @@ def _write_cloud(file: h5py.File, cloud: Cloud, end: str) -> None:
     points, start = f"points{end}", f"points_start{end}"
     file[points], file[start] = cloud.points, cloud.start
     file[points].attrs["columns"] = COLUMNS
-    file[points].attrs["units"] = ["m", "m", "m", "m/s", "1", "dB", "bin", "bin"]
+    file[points].attrs["units"] = COLUMN_UNITS
     file[points].attrs["axes"] = AXES
     file[points].attrs["doppler_sign"] = DOPPLER_SIGN
     file[start].attrs["meaning"] = "frame f has the points start[f] to start[f + 1] - 1"

@@ -1,4 +1,4 @@
-"""What the arrays of /products in dataset.h5 say of themselves: axes, units, edges."""
+"""Descriptions of the arrays of /products in dataset.h5: their axes, units and edges."""
 
 from collections.abc import Sequence
 

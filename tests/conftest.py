@@ -3,6 +3,7 @@
 import resource
 import signal
 import sys
+from collections import Counter
 from collections.abc import Iterable, Iterator
 from contextlib import nullcontext
 from pathlib import Path
@@ -69,8 +70,15 @@ def pytest_configure(config: pytest.Config) -> None:
     slow.whole_suite = "not slow" not in config.getoption("markexpr")
 
 
-@pytest.hookimpl(trylast=True)
+@pytest.hookimpl(tryfirst=True)
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
+    cases: Counter[str] = Counter()
+    for item in items:
+        if (marker := item.get_closest_marker("every")) is not None:
+            function = item.nodeid.partition("[")[0]
+            if cases[function] % marker.args[0]:
+                item.add_marker(pytest.mark.slow)
+            cases[function] += 1
     if config.getoption("--reverse"):
         items.reverse()
 

@@ -19,9 +19,12 @@ from radhar_cli.numerics.arrays import Float
 
 # MediaPipe's landmarks of an image; some write its world landmarks under these names, too.
 LANDMARKS = ("landmarks", "pose_landmarks", "poselandmarks", "landmark")
+WORLD_LANDMARKS = (
+    *("pose_world_landmarks", "poseworldlandmarks", "world_landmarks", "worldlandmarks"),
+)
 PIXELS = ("keypoints_2d", "keypoints2d", "pose_keypoints_2d")
 JOINTS = (
-    *("pose_world_landmarks", "poseworldlandmarks", "world_landmarks", "worldlandmarks"),
+    *WORLD_LANDMARKS,
     *("keypoints_3d", "keypoints3d", "pose_keypoints_3d", "joints_3d", "joints3d", "pose_3d"),
     *("positions", "joint_positions", "joints", "keypoint", "keypoints", "skeleton", "xyz"),
     *("joints19", "joints15", "joints26"),
@@ -42,6 +45,7 @@ _MAKERS = {
     ("keypoint", 34): "zed34",
     ("keypoint", 38): "zed38",
     ("joint_positions", 32): "azure32",
+    **{(key, 33): "blazepose33" for key in (*WORLD_LANDMARKS, *LANDMARKS)},
 }
 _TIMES = ("time", "timestamp", "t", "times", "timestamps", "univtime", "relativetime", "ts")
 _IDENTITIES: tuple[str, ...] = (

@@ -5,10 +5,11 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from helpers.poses import answered_clip
 from helpers.recorded import frames, write_npz
 
 from radhar_cli.errors import MotionFileError
-from radhar_cli.motion.recorded.clip import Clip, make_clip
+from radhar_cli.motion.recorded.clip import Clip
 from radhar_cli.motion.recorded.cycle import find_cycle
 from radhar_cli.motion.recorded.keypoints import Keypoints
 from radhar_cli.motion.recorded.motion import FileMotion
@@ -22,7 +23,7 @@ HIP, HEAD = JOINTS.index("hip"), JOINTS.index("head")
 
 
 def clip(positions: Float, rate: float = 120.0, **how: object) -> Clip:
-    return make_clip(Keypoints("x.npz", WANTED, positions, rate), **how)  # type: ignore[arg-type]
+    return answered_clip(Keypoints("x.npz", WANTED, positions, rate), **how)  # type: ignore[arg-type]
 
 
 def mover(one: Clip, **how: object) -> FileMotion:
@@ -60,7 +61,7 @@ def test_up_is_what_the_moving_body_says(order: list[int]) -> None:
     p = frames(seconds=1.0)
     for sign in (1, -1):
         file = Posed("x", WANTED, p, 120.0, rest=sign * p[0][:, order])
-        one = make_clip(file)
+        one = answered_clip(file)
         assert one.up == "z"
         np.testing.assert_allclose(one.positions, clip(p).positions)
 
@@ -99,7 +100,7 @@ def test_the_rest_pose_tells_the_up_axis_where_nobody_stands(tmp_path: Path) -> 
     with pytest.raises(MotionFileError, match=r"which axis points up, .* \(--up y\)"):
         clip(rolls)
     assert clip(rolls, up="y").up == "y"
-    assert make_clip(Posed("x", WANTED, rolls, 120.0, rest=p[0])).up == "z"
+    assert answered_clip(Posed("x", WANTED, rolls, 120.0, rest=p[0])).up == "z"
 
 
 def test_legs_give_the_stature_and_ankles_the_floor() -> None:
@@ -300,7 +301,9 @@ def test_torso_is_that_of_positions() -> None:
 
 def test_a_rig_without_hip_joints_has_them_at_the_hip(tmp_path: Path) -> None:
     p = frames(seconds=1.0)
-    one = make_clip(read_motion(write_npz(tmp_path / "x.npz", p[:, :13], names=JOINTS)).recording())
+    one = answered_clip(
+        read_motion(write_npz(tmp_path / "x.npz", p[:, :13], names=JOINTS)).recording()
+    )
     motion, t = mover(one), np.array([0.3])
     np.testing.assert_allclose(motion.hip_joints(t)[:, 0], motion.positions(t)[:, HIP], atol=1e-12)
     assert not one.hip_joints

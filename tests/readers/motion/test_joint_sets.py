@@ -5,9 +5,9 @@ from collections.abc import Mapping
 import joint_set_errors
 import numpy as np
 import pytest
+from helpers.poses import answered_clip
 
 from radhar_cli.errors import MotionFileError
-from radhar_cli.motion.recorded.clip import make_clip
 from radhar_cli.motion.recorded.joint_sets import JOINT_SETS
 from radhar_cli.motion.recorded.keypoints import make_keypoints
 from radhar_cli.motion.recorded.names import TORSO_SHARE
@@ -61,7 +61,7 @@ def test_axes_and_units_are_found(key: str, walker: Float) -> None:
         ("-y", 1.0, (y, -z, x)),
     ):
         values = np.stack(axes, axis=2) / unit + 3.7 / unit
-        clip = make_clip(make_keypoints("x", named(key), values, 30.0))
+        clip = answered_clip(make_keypoints("x", named(key), values, 30.0))
         assert clip.up == up
         assert 1.6 < clip.stature < 1.85
         found = joint_set_errors.joint_errors(walker[:, :13], clip.positions[:, :13])
@@ -76,8 +76,8 @@ def test_order_alone_tells_the_only_set_of_so_many(key: str, walker: Float) -> N
     """Never one of several in silence: the same joints as by their names, and a remark."""
     p = joint_set_errors.poses_of(JOINT_SETS[key], walker)
     p = p + np.random.default_rng(1).normal(0, 0.01, p.shape)
-    by_name = make_clip(make_keypoints("x", named(key), p, 30.0))
-    of_set = make_clip(make_keypoints("x", None, p, 30.0), key)
+    by_name = answered_clip(make_keypoints("x", named(key), p, 30.0))
+    of_set = answered_clip(make_keypoints("x", None, p, 30.0), key)
     assert np.array_equal(by_name.positions, of_set.positions)
     assert not of_set.remarks
     if SIZES.count(p.shape[1]) > 1:
@@ -85,9 +85,9 @@ def test_order_alone_tells_the_only_set_of_so_many(key: str, walker: Float) -> N
             MotionFileError,
             match=rf"joints without names; sets of so many are .*{ALIKE.get(key, key)}",
         ):
-            make_clip(make_keypoints("x", None, p, 30.0))
+            answered_clip(make_keypoints("x", None, p, 30.0))
         return
-    by_order = make_clip(make_keypoints("x", None, p, 30.0))
+    by_order = answered_clip(make_keypoints("x", None, p, 30.0))
     assert np.array_equal(by_name.positions, by_order.positions)
     assert JOINT_SETS[key].title in by_order.remarks[0]
 
@@ -98,14 +98,14 @@ def test_joints_of_no_set_are_asked_for(walker: Float) -> None:
         MotionFileError,
         match=r"17 joints without names; sets of so many are coco17 \(COCO\) and h36m17",
     ):
-        make_clip(make_keypoints("x", None, p, 30.0))
+        answered_clip(make_keypoints("x", None, p, 30.0))
     with pytest.raises(MotionFileError, match=r"13 joints without names; no set .*--joints SET"):
-        make_clip(make_keypoints("x", None, p[:, :13], 30.0))
+        answered_clip(make_keypoints("x", None, p[:, :13], 30.0))
     shuffled = p[:, np.random.default_rng(0).permutation(17)]
     with pytest.raises(MotionFileError, match=r"as no body has; .*--joints SET"):
-        make_clip(make_keypoints("x", None, shuffled, 30.0), "coco17")
+        answered_clip(make_keypoints("x", None, shuffled, 30.0), "coco17")
     with pytest.raises(MotionFileError, match=r"has 17 joints; smpl24 \(SMPL\) has 24"):
-        make_clip(make_keypoints("x", None, p, 30.0), "smpl24")
+        answered_clip(make_keypoints("x", None, p, 30.0), "smpl24")
 
 
 def test_a_joint_may_be_the_mean_of_a_list(walker: Float) -> None:
@@ -117,12 +117,12 @@ def test_a_joint_may_be_the_mean_of_a_list(walker: Float) -> None:
     legs = ("left_knee", "right_knee", "left_ankle", "right_ankle")
     of_ours |= {joint: f"k{13 + n}" for n, joint in enumerate(legs)}
     with_hip = {**of_ours, "hip": ["k11", "k12"]}
-    own = make_clip(make_keypoints("x", named("coco17"), p, 30.0)).positions
+    own = answered_clip(make_keypoints("x", named("coco17"), p, 30.0)).positions
     for joints in (of_ours, with_hip):
-        clip = make_clip(make_keypoints("x", names, p, 30.0), joints)
+        clip = answered_clip(make_keypoints("x", names, p, 30.0), joints)
         assert np.abs(clip.positions - own).max() < 1e-12
     with pytest.raises(MotionFileError, match=r"no joint 'k99' \(joints\.head\)"):
-        make_clip(make_keypoints("x", names, p, 30.0), {**of_ours, "head": ["k3", "k99"]})
+        answered_clip(make_keypoints("x", names, p, 30.0), {**of_ours, "head": ["k3", "k99"]})
 
 
 def test_other_spellings_of_a_set(walker: Float) -> None:
@@ -138,7 +138,7 @@ def test_other_spellings_of_a_set(walker: Float) -> None:
         ("kinect2_25", [name.upper() for name in JOINT_SETS["kinect2_25"].names]),
     ):
         p = joint_set_errors.poses_of(JOINT_SETS[key], walker)
-        clip = make_clip(make_keypoints("x", names, p, 30.0))
+        clip = answered_clip(make_keypoints("x", names, p, 30.0))
         assert joint_set_errors.joint_errors(walker[:, :13], clip.positions[:, :13]).max() < 0.05
 
 
@@ -158,4 +158,4 @@ def test_bones_of_nobody_are_refused_whatever_the_unit(
 ) -> None:
     p = joint_set_errors.poses_of(JOINT_SETS["coco17"], walker)
     with pytest.raises(MotionFileError, match=rf"^x: its ({bone}).*--joints SET or FILE\.yaml"):
-        make_clip(make_keypoints("x", named("coco17"), p, 30.0), joints, "z", unit)
+        answered_clip(make_keypoints("x", named("coco17"), p, 30.0), joints, "z", unit)

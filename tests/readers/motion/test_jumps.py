@@ -6,12 +6,22 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from helpers.poses import COCO, RATE, WALKER, c3d_bytes, largest_error, names, npz_bytes, trc_text
+from helpers.poses import (
+    COCO,
+    RATE,
+    WALKER,
+    answered_clip,
+    c3d_bytes,
+    largest_error,
+    names,
+    npz_bytes,
+    trc_text,
+)
 from helpers.recorded import frames, write_bvh, write_npz
 
 from radhar_cli.errors import MotionFileError
 from radhar_cli.motion.movements.catalogue import MOVEMENTS
-from radhar_cli.motion.recorded.clip import Clip, make_clip, require_complete
+from radhar_cli.motion.recorded.clip import Clip, require_complete
 from radhar_cli.motion.recorded.jumps import bridge_jumps, find_poses_apart
 from radhar_cli.motion.recorded.keypoints import make_keypoints
 from radhar_cli.motion.recorded.names import WANTED
@@ -22,7 +32,7 @@ WRIST = names("coco17").index("left_wrist")
 
 
 def clip_of(p: Float) -> Clip:
-    return make_clip(make_keypoints("x.npz", names("coco17"), p, RATE))
+    return answered_clip(make_keypoints("x.npz", names("coco17"), p, RATE))
 
 
 @pytest.mark.parametrize("far", [0.3, 1.0, 5.0])
@@ -64,7 +74,7 @@ def test_somebody_who_stays_elsewhere_leaves_the_seconds_beside_it(tmp_path: Pat
     begin = next(n for n, line in enumerate(lines) if line.startswith("Frame Time")) + 40
     lines[begin:-1] = ["900" + line[line.index(" ") :] for line in lines[begin:-1]]
     path.write_text("\n".join(lines))
-    clip = make_clip(read_motion(path).recording("x.bvh"))
+    clip = answered_clip(read_motion(path).recording("x.bvh"))
     with pytest.raises(MotionFileError, match=rf"x\.bvh:{begin + 1}: \w+ jumps .* 15 m/s at most"):
         require_complete(clip, 0.0, clip.seconds)
 
@@ -74,7 +84,7 @@ def test_a_frame_of_a_bvh_that_is_elsewhere_is_bridged(tmp_path: Path) -> None:
     q = p.copy()
     q[30] += [0.7, 0, 0]
     own, other = (
-        make_clip(read_motion(write_npz(tmp_path / f"{n}.npz", x, 60.0)).recording("x"))
+        answered_clip(read_motion(write_npz(tmp_path / f"{n}.npz", x, 60.0)).recording("x"))
         for n, x in enumerate((p, q))
     )
     assert np.abs(own.positions - other.positions).max() < 0.01
@@ -123,7 +133,7 @@ def test_a_t_pose_before_or_after_a_walk_is_left_out(
         poses = np.repeat(t_pose(at, degrees)[None], held, axis=0)
         p = np.concatenate([WALKER, poses] if is_end else [poses, WALKER])
         (tmp_path / file).write_bytes(POSES_WRITERS[file](p))
-        clip = make_clip(read_motion(tmp_path / file).recording(file))
+        clip = answered_clip(read_motion(tmp_path / file).recording(file))
         assert len(clip.positions) == len(WALKER)
         assert largest_error(clip) < 0.01
         (remark,) = clip.remarks
@@ -137,8 +147,8 @@ def test_a_t_pose_before_or_after_a_walk_is_left_out(
 def test_a_t_pose_of_a_bvh_is_left_out(rate: float, tmp_path: Path) -> None:
     p = frames(seconds=3.0, rate=rate)
     path = write_bvh(tmp_path / "x.bvh", np.concatenate([t_pose((0, 0), 0)[None], p]), rate)
-    clip = make_clip(read_motion(path).recording("x.bvh"))
-    own = make_clip(read_motion(write_npz(tmp_path / "y.npz", p, rate)).recording("x"))
+    clip = answered_clip(read_motion(path).recording("x.bvh"))
+    own = answered_clip(read_motion(write_npz(tmp_path / "y.npz", p, rate)).recording("x"))
     assert np.abs(clip.positions - own.positions).max() < 1e-5
     assert not clip.lost
 

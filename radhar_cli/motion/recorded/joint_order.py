@@ -24,7 +24,7 @@ def arrange_joints(file: Keypoints, joints: JointNames | None) -> Keypoints:
     if not file.is_named and not joints:
         keys = {key: joint_set.title for key, joint_set in sets_of_size(len(file.names)).items()}
         titles = " and ".join(f"{key} ({title})" for key, title in keys.items())
-        possible = f"known sets of so many are {titles}" if keys else "no known set has so many"
+        possible = f"sets of so many are {titles}" if keys else "no set that is known has so many"
         raise motion_file_error(
             file.where,
             f"has {len(file.names)} joints without names; {possible}: joints: SET of its class "

@@ -235,7 +235,7 @@ def _read_joints(
     if not joints:
         return None, None
     if isinstance(joints, list) and isinstance(joints[0], list) and len(joints) == 1:
-        joints = joints[0]  # of one person, in a list of people
+        names, joints = None, joints[0]  # of one person, in a list of people
         if not joints:
             return None, None
     if not isinstance(joints, list) or len(joints) > 5 * MAX_JOINTS:

@@ -177,9 +177,11 @@ def _without_names(table: TextTable) -> Keypoints:
     )
     width = len(table.rows[begin])
     numbers = _numbers_of(table, begin, range(width), width)
-    if np.array_equal(numbers[0], np.arange(width)):  # as pandas names columns
-        numbers = numbers[1:]
-    if width % 3:
+    columns = width - width % 3
+    if np.array_equal(numbers[0, -columns:], np.arange(columns)):  # as pandas names columns
+        is_index = width > columns and not table.rows[begin][0].strip()
+        numbers = numbers[1:, is_index:]
+    if numbers.shape[1] % 3:
         raise motion_file_error(
             where,
             f"has {width} columns without names; should have x, y, z of each joint, or a line "

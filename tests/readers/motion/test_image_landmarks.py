@@ -111,12 +111,11 @@ def test_who_grows_as_he_comes_nearer_is_said() -> None:
     assert any("same bones are up to 1." in remark for remark in clip.remarks)
 
 
-def test_a_unit_that_makes_no_person_is_said(tmp_path: Path) -> None:
+def test_a_unit_that_makes_no_person_is_asked_for(tmp_path: Path) -> None:
     text = trc_text(COCO, names("coco17")).replace("\tmm\t", "\tm\t")
-    clip = clip_of(tmp_path / "x.trc", text.encode())
-    assert "says that a unit is 1 m, of which somebody would be 17" in clip.remarks[0]
-    assert "taken for mm" in clip.remarks[0]
-    assert 1.7 < clip.stature < 1.85
+    with pytest.raises(MotionFileError, match=r"of 1\.7\de\+03 m in 1 m; .*\(--unit M"):
+        clip_of(tmp_path / "x.trc", text.encode())
+    assert 1.7 < clip_of(tmp_path / "x.trc", unit=0.001).stature < 1.85
 
 
 WORLD = camera(BLAZE) - camera(BLAZE)[:, 23:25].mean(axis=1, keepdims=True)
@@ -164,6 +163,6 @@ def test_landmarks_of_who_is_partly_outside_of_the_image_are_refused(
 @pytest.mark.parametrize("suffix", ["npy", "npz", "csv"])
 def test_world_landmarks_are_read_from_other_files(suffix: str, tmp_path: Path) -> None:
     name, write = FILES[suffix]
-    how = {"rate": RATE} if suffix == "npy" else {}
+    how = {"rate": RATE, "joints": "blazepose33"} if suffix == "npy" else {}
     clip = clip_of(tmp_path / name, write(WORLD, names("blazepose33")), **how)
     assert 1.7 < clip.stature < 1.85

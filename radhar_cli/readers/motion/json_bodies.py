@@ -93,6 +93,7 @@ class JsonBody(NamedTuple):
     joints: Float  # [J, 3]; NaN where a joint is lost
     names: list[str] | None
     are_landmarks: bool = False  # by their key, which is that of landmarks of an image
+    up: str | None = None  # axis that points up by the maker who has such a key
 
 
 class JsonFrame(NamedTuple):
@@ -193,14 +194,16 @@ def _read_body(body: Any, place: str) -> JsonBody | None:
     joints, names = _read_joints(value, place, width)
     if joints is None:
         return None
-    if (maker := _MAKERS.get((key or "", len(joints)))) and names is None:
+    maker = _MAKERS.get((key or "", len(joints))) if names is None else None
+    up = JOINT_SETS[maker].up if maker else None
+    if maker:
         names = [name.split("|")[0] for name in JOINT_SETS[maker].names]
     confidence = next((keys[name] for name in _CONFIDENCES if name in keys), None)
     if isinstance(confidence, list) and len(confidence) == len(joints):
         is_lost = [is_real(c) and c <= 0 for c in confidence]
         joints[np.array(is_lost, dtype=bool)] = np.nan
     identity = next((str(keys[name]) for name in _IDENTITIES if is_identity(keys.get(name))), None)
-    return JsonBody(identity, joints, names, key in LANDMARKS)
+    return JsonBody(identity, joints, names, key in LANDMARKS, up)
 
 
 def is_identity(value: Any) -> bool:

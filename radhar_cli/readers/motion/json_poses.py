@@ -9,6 +9,7 @@ import json
 import re
 from collections import Counter
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -164,7 +165,8 @@ def _recording(
         names = None
     unit = next((frame.time_unit for frame in frames if frame.time_unit), None)
     seconds = None if rate is not None else _seconds(times, frames, unit, where)
-    return make_keypoints(where, names, values, rate, seconds, None, remarks)
+    keypoints = make_keypoints(where, names, values, rate, seconds, None, remarks)
+    return replace(keypoints, up=known[0].up)
 
 
 def _choose_body(

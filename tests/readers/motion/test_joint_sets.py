@@ -16,6 +16,7 @@ from radhar_cli.motion.skeleton import JOINTS
 from radhar_cli.numerics.arrays import Float
 
 MEAN_M, LARGEST_M = 0.03, 0.07
+SHARED = ("panoptic19", "humaneva15")  # whose names another set has, too, so that they tell no axes
 
 
 @pytest.fixture(scope="module")
@@ -66,7 +67,7 @@ def test_axes_are_asked_for_and_units_are_found(key: str, walker: Float) -> None
         assert (clip.up, clip.unit) == (up, unit)
         with pytest.raises(MotionFileError, match=r"knees that bend backwards.*--left-handed"):
             answered_clip(file, left_handed=not left_handed)
-        documented = JOINT_SETS[key].up
+        documented = None if key in SHARED else JOINT_SETS[key].up
         if documented != up:
             said = "" if documented is None else f"has {documented} up by its kind.*"
             with pytest.raises(MotionFileError, match=rf"{said}\(--up {up}\)"):

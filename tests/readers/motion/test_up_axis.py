@@ -121,7 +121,7 @@ def test_a_c3d_has_the_unit_that_it_says(unit: bytes, stature: float, tmp_path: 
     data = c3d_bytes(p, names("coco17")).replace(b"\x01\x02mm", b"\x01\x02" + unit)
     clip = clip_of(tmp_path / "x.c3d", data)
     assert clip.unit == C3D_UNITS[unit]
-    assert clip.stature == pytest.approx(stature, rel=0.05)
+    assert clip.stature == pytest.approx(stature, rel=0.1)
     assert read_motion(tmp_path / "x.c3d").recording("x").unit == C3D_UNITS[unit]
 
 

@@ -134,7 +134,11 @@ def test_two_user_defined_classes_alone(place, tmp_path):
     config = load_config(
         place / "set.yaml",
         [
-            *("motion.model=file", "activities=all", "classes={a: [walks/*.bvh], b: {files: [wave.npz], up: z}}"),
+            *(
+                "motion.model=file",
+                "activities=all",
+                "classes={a: [walks/*.bvh], b: {files: [wave.npz], up: z}}",
+            ),
             "samples_per_class=3",
         ],
     )

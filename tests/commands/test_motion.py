@@ -88,7 +88,7 @@ def test_options_say_what_a_motion_file_does_not(tmp_path):
     (tmp_path / "wrong.yaml").write_text("knee: Knie\n")
     play = ["simulate", config, "--no-figures", "-o", tmp_path / "out", "--motion", path]
     done = ok(*play, "--joints", tmp_path / "ours.yaml", "--up", "z")
-    assert "; z is up, a unit 1 m; " in done.stdout
+    assert "; z is up, a unit is 1 m, 120 frames/s; " in done.stdout
     refused = {
         (): "no joint that is right_knee by its name",
         ("--joints", tmp_path / "ours.yaml"): "(--up z)",
@@ -143,7 +143,8 @@ def test_simulate_says_which_part_of_a_file_is_repeated_and_where_it_starts(tmp_
     write_npz(tmp_path / "wave.npz", frames("punching", 2.0, 60.0), 60.0, [*WANTED])
     (tmp_path / "x.yaml").write_text(
         "duration_s: 6\nradar: {prf_hz: 500}\nmaps: [stft]\nmotion: {range_m: 6}\n"
-        "classes: {wave: {files: [wave.npz], up: z, past_end: loop, start: 1}}\nactivities: [wave]\n"
+        "classes: {wave: {files: [wave.npz], up: z, past_end: loop, start: 1}}\n"
+        "activities: [wave]\n"
     )
     done = ok("simulate", tmp_path / "x.yaml", "--no-figures", "-o", tmp_path / "out")
     file = json.loads((tmp_path / "out/scene.json").read_text())["motion_file"]

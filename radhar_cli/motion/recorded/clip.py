@@ -254,10 +254,10 @@ def _find_unit(leg: float, unit: float | None, where: str) -> float:
     for name, stature in statures.items():
         if low <= stature <= high:
             return units[name]
-    made = " or ".join(f"of {stature:.3g} m in {name}" for name, stature in statures.items())
+    sizes = " or ".join(f"of {stature:.3g} m in {name}" for name, stature in statures.items())
     raise motion_file_error(
         where,
-        f"has legs of {leg:.4g} units, those of a person {made}; should be {low} to {high} m: "
+        f"has legs of {leg:.4g} units, those of a person {sizes}; should be {low} to {high} m: "
         "unit_m of its class says how many metres a unit is (--unit M; inches: 0.0254, CMU's BVH: "
         "0.0564)",
     )

@@ -142,6 +142,7 @@ def _motion_file(motion: Motion) -> dict[str, Any] | None:
         "loops": cycle is not None,
         "up": motion.clip.up,
         "unit_m": motion.clip.unit,
+        "rate_hz": motion.clip.rate,
         "lasts_s": motion.clip.seconds,
         "stature_m": motion.clip.stature,
     }

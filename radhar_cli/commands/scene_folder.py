@@ -133,7 +133,8 @@ def print_summary(simulation: "Simulation", files: list[Path]) -> None:
         tell(
             f"  motion: {clip['path']}, {clip['begin_s']:.2f} to {clip['end_s']:.2f} s of its "
             f"{clip['lasts_s']:.2f} s{loop}; {clip['up']} is up, a unit is "
-            f"{clip['unit_m']:.4g} m, {clip['rate_hz']:.4g} frames/s; leg length of a person of {clip['stature_m']:.2f} m"
+            f"{clip['unit_m']:.4g} m, {clip['rate_hz']:.4g} frames/s; "
+            f"leg length of a person of {clip['stature_m']:.2f} m"
         )
     report(
         activity=activity.slug,

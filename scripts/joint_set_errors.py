@@ -138,7 +138,7 @@ def errors_of_sets(keys: tuple[str, ...] = tuple(JOINT_SETS)) -> dict[str, Float
     for key in keys:
         joint_set = JOINT_SETS[key]
         names = [name.split("|")[0] for name in joint_set.names]
-        clip = make_clip(make_keypoints(key, names, poses_of(joint_set, p), RATE))
+        clip = make_clip(make_keypoints(key, names, poses_of(joint_set, p), RATE), up="z")
         errors[key] = joint_errors(p[:, : len(JOINTS)], clip.positions[:, : len(JOINTS)])
     return errors
 

@@ -29,7 +29,7 @@ from helpers.boards import CFG
 from helpers.capture_files import write_all
 from helpers.command_line import ROOT, radhar
 from helpers.documents import PAGES, Block, blocks
-from helpers.poses import BLAZE, NTU, WALKER, T, c3d_bytes, landmarks, names
+from helpers.poses import BLAZE, NTU, WALKER, T, c3d_bytes, camera, landmarks, names
 from helpers.recorded import frames, write_amc, write_bvh, write_motions, write_npz
 from helpers.shell import Answer, Call, run_shell
 from helpers.slow import slow
@@ -292,7 +292,7 @@ FILES: dict[str, dict[str, Callable[[Path], object]]] = {
     },
     "poses.md": {
         "webcam.json": webcam,
-        "recorded.npy": lambda path: np.save(path, NTU),
+        "recorded.npy": lambda path: np.save(path, camera(NTU) * [-1, -1, 1]),
         "ticks.npy": lambda path: np.save(path, np.round(1e7 * T).astype(np.int64)),
         "gait.c3d": gait_markers,
     },

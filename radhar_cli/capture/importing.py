@@ -212,7 +212,11 @@ def _coding(
 
 
 def _conjugated(probed: list[Parts], source: Source, s: CaptureSettings, notes: list[str]) -> bool:
-    """Whether samples have to be conjugated for radhar's sign of the beat; add a note."""
+    """Whether samples have to be conjugated for radhar's sign of the beat; add a note.
+
+    Raises:
+        CaptureError: neither the samples nor a document of their maker tells the sign.
+    """
     if source.parts == 1 or source.samples is None or s.are_profiles:
         return source.parts == 2 and s.beat == "positive"
     shares = findings.positive_share(probed)
@@ -226,11 +230,14 @@ def _conjugated(probed: list[Parts], source: Source, s: CaptureSettings, notes: 
     )
     if s.beat is not None:
         notes.append(f"beat {s.beat}, as asked ({shares_text})")
+    elif sign is None and source.usual_beat is None:
+        raise CaptureError(
+            f"{source.name}: {shares_text}: the sign of the beat is unclear; should be told by "
+            "--set beat=negative (as radhar's own) or --set beat=positive (as TI's boards)"
+        )
     elif sign is None:
         sign = source.usual_beat
-        notes.append(
-            f"{shares_text}: the sign of the beat is unclear; {sign} assumed (set beat=...)"
-        )
+        notes.append(f"{shares_text}: beat {sign}, as its maker has it (set beat=...)")
     else:
         notes.append(f"beat {sign}: {shares_text}")
     if sign == "positive":

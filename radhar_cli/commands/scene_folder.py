@@ -132,7 +132,8 @@ def print_summary(simulation: "Simulation", files: list[Path]) -> None:
         loop = f", in a loop that starts at {clip['start_s']:.2f} s" if clip["loops"] else ""
         tell(
             f"  motion: {clip['path']}, {clip['begin_s']:.2f} to {clip['end_s']:.2f} s of its "
-            f"{clip['lasts_s']:.2f} s{loop}; {clip['up']} is up; "
+            f"{clip['lasts_s']:.2f} s{loop}; {clip['up']} is up, a unit is "
+            f"{clip['unit_m']:.4g} m, {clip['rate_hz']:.4g} frames/s; "
             f"leg length of a person of {clip['stature_m']:.2f} m"
         )
     report(

@@ -84,6 +84,13 @@ def simulate(
             help="With --motion: whether the hips go as the file says, or as the feet tell.",
         ),
     ] = None,
+    left_handed: Annotated[
+        bool,
+        typer.Option(
+            "--left-handed",
+            help="With --motion: its axes are left-handed, or its camera mirrors.",
+        ),
+    ] = False,
     skeleton: Annotated[
         Path | None,
         typer.Option(help="With --motion: .asf file of an .amc. The default is the one beside it."),
@@ -139,6 +146,7 @@ def simulate(
         "unit": unit,
         "section": section,
         "travel": travel,
+        "left-handed": left_handed or None,
     }
     overrides = _motion_overrides(activity or FROM_FILE, motion, reading)
     configs = load_radars(config, [*overrides, *with_tolerance(set_, tolerance)])
@@ -245,7 +253,12 @@ def _reader_overrides(slug: str, reading: "Mapping[str, str | float | Path]") ->
         values["skeleton"] = str(Path(str(reading["skeleton"])).absolute())
     if "section" in reading:
         values["section"] = _section_of(str(reading["section"]))
-    keys = {"rate": "rate_hz", "unit": "unit_m", "section": "section_s"}
+    keys = {
+        "rate": "rate_hz",
+        "unit": "unit_m",
+        "section": "section_s",
+        "left-handed": "left_handed",
+    }
     return [
         Override(f"classes.{slug}.{keys.get(option, option)}", json.dumps(value), f"--{option}")
         for option, value in values.items()

@@ -260,7 +260,7 @@ def _tell_cost(build_plan: "BuildPlan") -> None:
 
 def _tell_training(config: "Config", epochs: int) -> None:
     """Print what training on the images of a map costs, and what it would of a radar's own size."""
-    from radhar_cli.config.request import size_of_frames
+    from radhar_cli.config.first_level import size_of_frames
     from radhar_cli.dataset.estimate import training_seconds
     from radhar_cli.schema.number import nominal
 

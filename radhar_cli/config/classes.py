@@ -58,9 +58,12 @@ class FilesConfig(Section, Generic[N]):
     do not know the file's, or their numbers from 0 where it has no names; or the set in whose order
     the file's joints are, such as coco17."""
     up: Literal["x", "y", "z", "-x", "-y", "-z"] | None = None
-    """Axis of the files that points up; null finds it by the body's pose."""
+    """Axis of the files that points up; null is that of their format, where its maker says one."""
     unit_m: Annotated[float, Field(ge=1e-6, le=1e3, strict=True)] | None = None
-    """Length unit of the files; null finds it by the body's size."""
+    """Length unit of the files; null is that of their format, else the one of m, cm and mm which
+    makes a person."""
+    left_handed: Annotated[bool, Field(strict=True)] = False
+    """Whether the axes of the files are left-handed, or a camera mirrors: knees bend backwards."""
     rate_hz: Annotated[float, Field(ge=1, le=1e4, strict=True)] | None = None
     """Frames per second of the files, instead of their own."""
     section_s: tuple[FileSecond, FileSecond] | None = None

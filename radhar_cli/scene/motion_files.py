@@ -75,6 +75,7 @@ def _cached_clip(files_config: FilesConfig, folder: Path, path: str, checksum: s
         files_config.rate_hz,
         files_config.low_pass_hz,
         files_config.travel,
+        files_config.left_handed,
     )
     key = (folder, path, checksum, files_config.skeleton, *reading_options)
     if key in _clips:
@@ -90,11 +91,7 @@ def _cached_clip(files_config: FilesConfig, folder: Path, path: str, checksum: s
     clip = make_clip(
         motion_bytes.recording(path),
         files_config.joints,
-        files_config.up,
-        files_config.unit_m,
-        files_config.rate_hz,
-        files_config.low_pass_hz,
-        files_config.travel,
+        *reading_options[1:],
     )
     _clips[key] = clip
     while len(_clips) > 1 and sum(c.positions.nbytes for c in _clips.values()) > CACHE_BYTES:

@@ -147,7 +147,7 @@ def test_a_recording_made_elsewhere_is_refused_in_one_line(
 
 def test_nothing_but_zeros_is_refused(tmp_path: Path) -> None:
     zeros = save(tmp_path / "zeros.npy", 0 * longer())
-    done = radhar("import", zeros, "-o", tmp_path / "zeros.h5", *SET)
+    done = radhar("import", zeros, "-o", tmp_path / "zeros.h5", *SET, "--set", "beat=negative")
     assert done.returncode == 2
     assert done.stderr.startswith("radhar: zeros.h5: each of the 400 pulses lacks samples")
     assert not (tmp_path / "zeros.h5").exists()
@@ -155,7 +155,7 @@ def test_nothing_but_zeros_is_refused(tmp_path: Path) -> None:
 
 def test_tiny_numbers_are_processed(tmp_path: Path) -> None:
     tiny = save(tmp_path / "tiny.npy", 1e-200 * longer())
-    import_capture([tiny], tmp_path / "tiny.h5", read_settings(None, RADAR))
+    import_capture([tiny], tmp_path / "tiny.h5", read_settings(None, [*RADAR, "beat=negative"]))
     (tmp_path / "c.yaml").write_text(CONFIG)
     done = radhar(
         *("process", tmp_path / "tiny.h5", "--config", tmp_path / "c.yaml"),

@@ -199,7 +199,7 @@ def test_beat_signals_are_not_taken_for_range_bins(tmp_path):
             np.save(tmp_path / "beat.npy", values)
             info, _ = taken(
                 tmp_path, ["beat.npy"], "carrier_hz=24e9", "bandwidth_hz=2.5e8",
-                "adc_rate_hz=1e6", "prf_hz=1000", "axes=[sample,pulse]",
+                "adc_rate_hz=1e6", "prf_hz=1000", "axes=[sample,pulse]", "beat=negative",
             )  # fmt: skip
             assert info.content.dataset == "beat"
 

@@ -50,15 +50,20 @@ def test_floats_of_an_x4_are_waves_or_i_and_q(tmp_path):
     x = profiles()
     write_x4_floats(tmp_path / "xethru_datafloat_1.dat", np.concatenate([x.real, x.imag], axis=1))
     with pytest.raises(
-        CaptureError, match="carrier_hz, prf_hz, bandwidth_hz, first_range_m are missing"
+        CaptureError, match=r"I and then Q \(axes=\[pulse,iq,sample\]\), or wrote waves"
     ):
         taken(tmp_path, "xethru_datafloat_1.dat")
+    iq, waves = "axes=[pulse,iq,sample]", "axes=[pulse,sample]"
+    with pytest.raises(
+        CaptureError, match="carrier_hz, prf_hz, bandwidth_hz, first_range_m are missing"
+    ):
+        taken(tmp_path, "xethru_datafloat_1.dat", iq)
     keys = ["carrier_hz=7.29e9", "prf_hz=256", "first_range_m=0.3", "bandwidth_hz=1.5e9"]
-    info, values = taken(tmp_path, "xethru_datafloat_1.dat", *keys)
+    info, values = taken(tmp_path, "xethru_datafloat_1.dat", iq, *keys)
     assert (info.content.is_iq, info.content.range_step_m) == (True, pytest.approx(8 * STEP))
     np.testing.assert_allclose(values[0], x.T, rtol=1e-6)
     write_x4_floats(tmp_path / "xethru_datafloat_2.dat", x4_waves())
-    info, values = taken(tmp_path, "xethru_datafloat_2.dat", *keys)
+    info, values = taken(tmp_path, "xethru_datafloat_2.dat", waves, *keys)
     assert (info.content.is_iq, info.content.range_step_m) == (False, pytest.approx(STEP))
     assert info.content.are_waves
     np.testing.assert_allclose(values[0], x4_waves().T, rtol=1e-6)

@@ -146,7 +146,10 @@ def test_an_array_is_of_the_subframe_that_is_chosen(tmp_path: Path) -> None:
     assert result.returncode == 2
     assert "cube.npy: .npy holds one subframe; " in result.stderr
     axes = "axes=[frame, pulse, transmitter, receiver, sample]"
-    ok(*command, "-o", tmp_path / "walk.h5", "--set", "subframe=1", "--set", axes)
+    keys = ("--set", "subframe=1", "--set", axes)
+    unclear = radhar(*command, "-o", tmp_path / "walk.h5", *keys)  # of noise alone
+    assert "the sign of the beat is unclear; should be told by --set beat=" in unclear.stderr
+    ok(*command, "-o", tmp_path / "walk.h5", *keys, "--set", "beat=positive")
     with Recording(tmp_path / "walk.h5") as recording:
         assert recording.info.shape == (8, 128, 96)
         assert recording.segments.start == pytest.approx([0.05, 0.15, 0.25])

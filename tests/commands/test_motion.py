@@ -20,7 +20,7 @@ duration_s: 1.5
 radar: {carrier_hz: 10e9, bandwidth_hz: 1e9, prf_hz: 200}
 motion: {range_m: 3, angle_deg: 0}
 subject: {height_m: 1.75, chest_m: 0, heart_m: 0}
-classes: {wave: {files: [theirs.npz], joints: {right_knee: Knie}}}
+classes: {wave: {files: [theirs.npz], up: z, joints: {right_knee: Knie}}}
 """
 
 
@@ -88,9 +88,11 @@ def test_options_say_what_a_motion_file_does_not(tmp_path):
     (tmp_path / "wrong.yaml").write_text("knee: Knie\n")
     play = ["simulate", config, "--no-figures", "-o", tmp_path / "out", "--motion", path]
     done = ok(*play, "--joints", tmp_path / "ours.yaml", "--up", "z")
-    assert "; z is up; " in done.stdout
+    assert "; z is up, a unit is 1 m, 120 frames/s; " in done.stdout
     refused = {
         (): "no joint that is right_knee by its name",
+        ("--joints", tmp_path / "ours.yaml"): "(--up z)",
+        ("--joints", tmp_path / "ours.yaml", "--up", "z", "--left-handed"): "without --left-handed",
         ("--joints", tmp_path / "wrong.yaml"): "--joints =",
         ("--up", "w"): "--up = ",
         ("--skeleton", "x.asf"): "--skeleton = ",
@@ -113,25 +115,27 @@ def test_poses_without_names_or_a_rate_need_options_that_messages_name(tmp_path)
     poses[20:24, 13] = np.nan
     np.save(path, poses - poses[:, [23, 24]].mean(axis=1, keepdims=True))
     play = ["simulate", config, "--no-figures", "-o", tmp_path / "out", "--motion", path]
+    told = ("--rate", 30, "--joints", "blazepose33")
     refused = {
-        (): "should have a frame rate of 1 to 10000 Hz: rate_hz of its class (--rate HZ)",
+        (): "has 33 joints without names; sets of so many are blazepose33 (BlazePose, MediaPipe)",
+        ("--joints", "blazepose33"): "should have a frame rate of 1 to 10000 Hz: rate_hz of its "
+        "class (--rate HZ)",
         ("--rate", 30, "--joints", "coco18"): "did you mean 'coco17'?",
         ("--rate", 30, "--joints", "coco17"): "has 33 joints; coco17 (COCO) has 17",
         ("--rate", 30, "--travel", "hands"): "--travel = ",
         ("--rate", 30, "--section", "3"): "--section 3: should be FROM,TO",
-        ("--rate", 30, "--unit", 5): "those of a giant",
+        (*told, "--unit", 5): "those of a person of 8.75 m in 5 m",
     }
     for words, message in refused.items():
         done = radhar(*play, *words, "--overwrite")
         assert (done.returncode, "classes." in done.stderr) == (2, False)
         assert message in done.stderr
-    done = ok(*play, "--rate", 30, "--section", "0.5,3.5")
+    done = ok(*play, *told, "--up", "z", "--section", "0.5,3.5")
     warnings = done.stderr.splitlines()
     assert any("marches on the spot" in line for line in warnings)
     assert any("1 gap of up to 0.5 s, 4 frames" in line for line in warnings)
-    assert any("in the order of BlazePose, MediaPipe" in line for line in warnings)
     assert "0.50 to 1.50 s of its" in done.stdout
-    done = ok(*play, "--rate", 30, "--travel", "feet", "--joints", "blazepose33", "--overwrite")
+    done = ok(*play, *told, "--up", "z", "--travel", "feet", "--overwrite")
     assert "marches" not in done.stderr
 
 
@@ -139,7 +143,8 @@ def test_simulate_says_which_part_of_a_file_is_repeated_and_where_it_starts(tmp_
     write_npz(tmp_path / "wave.npz", frames("punching", 2.0, 60.0), 60.0, [*WANTED])
     (tmp_path / "x.yaml").write_text(
         "duration_s: 6\nradar: {prf_hz: 500}\nmaps: [stft]\nmotion: {range_m: 6}\n"
-        "classes: {wave: {files: [wave.npz], past_end: loop, start: 1}}\nactivities: [wave]\n"
+        "classes: {wave: {files: [wave.npz], up: z, past_end: loop, start: 1}}\n"
+        "activities: [wave]\n"
     )
     done = ok("simulate", tmp_path / "x.yaml", "--no-figures", "-o", tmp_path / "out")
     file = json.loads((tmp_path / "out/scene.json").read_text())["motion_file"]

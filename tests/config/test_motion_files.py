@@ -208,7 +208,7 @@ def test_joints_without_names_are_known_by_their_numbers(tmp_path: Path) -> None
     for numbers in (places, {name: as_texts(place) for name, place in places.items()}):
         document = {
             "duration_s": 1,
-            "classes": {"wave": {"files": ["x.npz"], "joints": numbers}},
+            "classes": {"wave": {"files": ["x.npz"], "up": "z", "joints": numbers}},
             "activities": ["wave"],
         }
         (tmp_path / "x.yaml").write_text(json.dumps(document))
@@ -218,7 +218,7 @@ def test_joints_without_names_are_known_by_their_numbers(tmp_path: Path) -> None
         assert list(joints["hip"]) == [str(place) for place in places["hip"]]
         scene = draw_scene(config, config.chosen_activities[0], 0)
         clip = file_motion(scene.people[0]).clip
-        own = make_clip(make_keypoints("x", WANTED, p[:, ::-1], 30.0))
+        own = make_clip(make_keypoints("x", WANTED, p[:, ::-1], 30.0), up="z")
         assert np.abs(clip.positions - own.positions).max() < 0.01
 
 

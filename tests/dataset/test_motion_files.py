@@ -30,7 +30,7 @@ activities: [walking, kicking, wave, rise]
 classes:
   rise: {files: [rise.amc], section_s: [0.2, 2.5], past_end: rest}
   walking: [walks/*.bvh]
-  wave: [wave.npz]
+  wave: {files: [wave.npz], up: z}
 maps: [stft]
 image: {size_px: 32}
 split: {train: 0.67, validation: 0.33}
@@ -134,7 +134,11 @@ def test_two_user_defined_classes_alone(place, tmp_path):
     config = load_config(
         place / "set.yaml",
         [
-            *("motion.model=file", "activities=all", "classes={a: [walks/*.bvh], b: [wave.npz]}"),
+            *(
+                "motion.model=file",
+                "activities=all",
+                "classes={a: [walks/*.bvh], b: {files: [wave.npz], up: z}}",
+            ),
             "samples_per_class=3",
         ],
     )

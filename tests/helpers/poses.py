@@ -1,14 +1,17 @@
 """Poses of a known walker in the formats that people have."""
 
 import io
+import re
 import struct
 from pathlib import Path
 
 import joint_set_errors
 import numpy as np
 
+from radhar_cli.errors import MotionFileError
 from radhar_cli.motion.recorded.clip import Clip, make_clip
 from radhar_cli.motion.recorded.joint_sets import JOINT_SETS
+from radhar_cli.motion.recorded.recording import MotionRecording
 from radhar_cli.numerics.arrays import Float
 from radhar_cli.readers.motion.reading import read_motion
 
@@ -121,11 +124,22 @@ def npy_bytes(array: Float) -> bytes:
     return buffer.getvalue()
 
 
+def answered_clip(file: MotionRecording, *told: object, **options: object) -> Clip:
+    """Clip of a recording, of which the axis is told that a message asks for, where one does."""
+    try:
+        return make_clip(file, *told, **options)  # type: ignore[arg-type]
+    except MotionFileError as asked:
+        up = re.search(r"head is above the feet.*?\(--up (-?[xyz])\)", str(asked))
+        if up is None:
+            raise
+    return make_clip(file, *told, **options, up=up[1])  # type: ignore[arg-type]
+
+
 def clip_of(path: Path, data: bytes | None = None, **options: object) -> Clip:
     """Clip of a motion file, or of a folder of them; data, where given, is written to it first."""
     if data is not None:
         path.write_bytes(data)
-    return make_clip(read_motion(path).recording(path.name), **options)  # type: ignore[arg-type]
+    return answered_clip(read_motion(path).recording(path.name), **options)
 
 
 def joint_errors(clip: Clip) -> Float:

@@ -173,7 +173,7 @@ def test_no_pipe_no_device_and_nothing_too_large(tmp_path: Path) -> None:
     (tmp_path / "zero.bvh").symlink_to("/dev/zero")
     with (tmp_path / "large.bvh").open("wb") as file:
         file.truncate(MAX_BYTES + 1)
-    for name, message in (("x", "FIFO"), ("zero", "device"), ("large", "should be at most")):
+    for name, message in (("x", "FIFO"), ("zero", "device"), ("large", "should have at most")):
         with limited(), pytest.raises(MotionFileError, match=message):
             read_motion(tmp_path / f"{name}.bvh")
 

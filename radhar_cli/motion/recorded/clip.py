@@ -12,30 +12,22 @@ from radhar_cli.motion.recorded.image_landmarks import (
     refuse_landmarks,
     refuse_landmarks_in_depth,
 )
-from radhar_cli.motion.recorded.joint_frames import LostSection, blend, read_frames
+from radhar_cli.motion.recorded.joint_frames import LostSection, read_frames
 from radhar_cli.motion.recorded.joint_order import arrange_joints
 from radhar_cli.motion.recorded.joint_sets import JOINT_SETS
-from radhar_cli.motion.recorded.jumps import (
-    bridge_jumps,
-    describe_jumps,
-    find_jumps,
-    find_poses_apart,
-)
+from radhar_cli.motion.recorded.jumps import find_jumps
 from radhar_cli.motion.recorded.keypoints import Keypoints
 from radhar_cli.motion.recorded.names import JointMean, JointNames, joint_means
 from radhar_cli.motion.recorded.plain_names import canonical_name, own_names
 from radhar_cli.motion.recorded.proportions import refuse_impossible_body
 from radhar_cli.motion.recorded.recording import MotionRecording, motion_file_error
-from radhar_cli.motion.recorded.side_swaps import describe_side_swaps, undo_side_swaps
 from radhar_cli.motion.recorded.travel import travel_by_feet
-from radhar_cli.motion.recorded.up_axis import UPRIGHT, find_up_axis
+from radhar_cli.motion.recorded.up_axis import UPRIGHT, check_up_axis, documented_up_axis
 from radhar_cli.motion.skeleton import ANKLE_HEIGHT, JOINTS, stature_of_leg
 from radhar_cli.numerics.arrays import Float
 
-UNITS = {"m": 1.0, "cm": 0.01, "mm": 0.001, "inches": 0.0254, "CMU's 0.0564 m": 0.0254 / 0.45}
+UNITS = {"m": 1.0, "cm": 0.01, "mm": 0.001}  # a decade apart: one at most makes a person
 STATURES = (0.9, 2.3)  # m, of people
-# m, of people in a unit that nothing tells: those in one unit are hardly giants in another
-LIKELY_STATURES = (0.96, 2.3)
 STAYS = 0.03  # most that hips move in the plane which stay where they are, over the stature
 SLIPS = 0.1  # least speed of a foot that is not at rest, statures per second
 BENT = 0.01  # least distance of knees before the line from hip to ankle, over the stature
@@ -70,7 +62,7 @@ class Clip:
     hip_joints: bool  # whether the file has them; else they are at the hip
     stature: float  # of the recorded person by the legs, m
     up: str = "z"  # axis of the file that points up
-    mirrored: bool = False  # the file is a mirror image, or its axes are left-handed
+    unit: float = 1.0  # length of a unit of the file, m
     usable: tuple[float, float] | None = None  # s; None: from the first to the last frame
     lost: tuple[LostSection, ...] = ()
     bridged: str = ""  # what is bridged, in words
@@ -117,7 +109,7 @@ def require_complete(clip: Clip, begin: float, end: float) -> None:
     )
 
 
-def make_clip(
+def make_clip(  # noqa: PLR0913 - what a file does not say is what a class of a config says
     file: MotionRecording,
     joints: JointNames | None = None,
     up: str | None = None,
@@ -125,25 +117,28 @@ def make_clip(
     rate: float | None = None,
     low_pass: float | None = 8.0,
     travel: Literal["file", "feet"] = "file",
+    left_handed: bool = False,
 ) -> Clip:
     """Read the frames of a recording and bring them into our form.
 
     Args:
+        file: Recording.
         joints: {our name: the file's, or a list of them} where names alone do not tell, or the key
             of the joint set in whose order the joints are.
-        up: Axis of the file that points up, such as "y" or "-y"; None finds it.
-        unit: Length of a unit of the file, m; None finds it.
+        up: Axis of the file that points up, such as "y" or "-y"; None is that of its format.
+        unit: Length of a unit of the file, m; None is that of its format, else m, cm or mm.
         rate: Frames per second, instead of the file's.
         low_pass: Frequency at which a Butterworth filter, run both ways, is 3 dB down, Hz; None
             leaves the frames as they are, and so do fewer than 2.5 frames a period of it.
         travel: Whether the hips go as the file says, or as the foot on the floor tells.
+        left_handed: Whether the axes are left-handed, or a camera mirrors, so that left is right.
 
     Raises:
-        MotionFileError: Joints or the rate are missing, the person has no human size, or nothing
-            tells which axis points up.
+        MotionFileError: Joints or the rate are missing, the person has no human size, nothing says
+            which axis points up, or knees bend backwards.
     """
     if isinstance(file, Keypoints):
-        file, joints = _arrange(file, joints, unit)
+        file = _arrange(file, joints, unit)
     means = joint_means(file, joints or {})
     remarks = file.remarks if isinstance(file, Keypoints) else ()
     remarks += _head_remarks(file, joints, means[_HEAD])
@@ -152,18 +147,10 @@ def make_clip(
     frames = read_frames(file, blends, rate)
     refuse_impossible_body(frames.positions, file.where)
     leg = _leg_in_units(frames.positions, has_hip_joints)
-    unit_m, unit_remarks = _find_unit(leg, unit, file.unit, file.where)
-    stature = stature_of_leg(leg * unit_m)
-    first, last, apart = find_poses_apart(frames.positions, frames.rate, unit_m)
-    frames = frames.cut(first, last)
-    p, exchanged = undo_side_swaps(frames.positions) if has_hip_joints else (frames.positions, 0)
-    remarks += describe_side_swaps(exchanged)
-    p, is_away = bridge_jumps(p, frames.rate, unit_m)
-    remarks += (*unit_remarks, *apart, *describe_jumps(is_away, frames.rate))
-    jumps = find_jumps(file, p, frames.rate, unit_m, first)
-    if up is None:
-        up, doubt = _find_up_axis(file, blends, p, frames.rate, stature / unit_m)
-        remarks += (doubt,) if doubt else ()
+    unit_m = _find_unit(leg, unit or file.unit, file.where)
+    stature, p = stature_of_leg(leg * unit_m), frames.positions
+    jumps = find_jumps(file, p, frames.rate, unit_m)
+    up = up or check_up_axis(documented_up_axis(file, joints or {}), p, file.where)
     if isinstance(file, Keypoints):
         remarks += _look_for_pictures(file, p, stature / unit_m, up, unit)
     p = np.stack([sign * p[..., axis] for axis, sign in _AXES[up]], axis=-1)
@@ -171,8 +158,8 @@ def make_clip(
     if travel == "feet":
         p += travel_by_feet(p[:, _ANKLES], frames.rate)[:, None]
     p[..., 2] += ANKLE_HEIGHT - p[:, _ANKLES, 2].min()
-    mirrored = _is_mirrored(p)
-    p[..., 1] *= -1 if mirrored else 1
+    p[..., 1] *= -1 if left_handed else 1
+    _refuse_mirror_image(p, left_handed, file.where)
     return Clip(
         file.where,
         p,
@@ -180,7 +167,7 @@ def make_clip(
         has_hip_joints,
         stature,
         up,
-        mirrored,
+        unit_m,
         frames.usable,
         tuple(sorted((*frames.lost, *jumps), key=lambda section: section.begin)),
         frames.bridged,
@@ -189,20 +176,14 @@ def make_clip(
     )
 
 
-def _arrange(
-    file: Keypoints, joints: JointNames | None, unit: float | None
-) -> tuple[Keypoints, JointNames | None]:
-    """Arrange joints as they make a body; refuse landmarks of a picture.
-
-    Returns:
-        The recording, and its joints as a config says them, or the key of the set.
-    """
+def _arrange(file: Keypoints, joints: JointNames | None, unit: float | None) -> Keypoints:
+    """Arrange joints as they make a body; refuse landmarks of a picture."""
     if unit is None:
         refuse_landmarks(file.values, file.where)
-    arranged, joints = arrange_joints(file, joints)
+    arranged = arrange_joints(file, joints)
     if unit is None and arranged is not file:
         refuse_landmarks(arranged.values, file.where)
-    return arranged, joints
+    return arranged
 
 
 def _look_for_pictures(
@@ -260,84 +241,30 @@ def _ahead(p: Float) -> Float:
     return unit
 
 
-def _find_unit(
-    leg: float, unit: float | None, unit_of_file: float | None, where: str
-) -> tuple[float, tuple[str, ...]]:
-    """Length of a unit, m: that of the config, or else the first that makes a person.
-
-    Returns:
-        The length, and what to say where it is not that of the file.
+def _find_unit(leg: float, unit: float | None, where: str) -> float:
+    """Length of a unit, m: what is said, else that of m, cm and mm which makes a person.
 
     Args:
         leg: Length of a leg in units of the file.
-        unit: Length of a unit by the config, m, or None.
-        unit_of_file: Length of a unit by the file, m, or None.
+        unit: Length of a unit by the config or the file, m, or None.
         where: Name of the file in messages.
     """
-    low, high = STATURES
-    if not 1e-9 < leg < 1e9:
-        raise motion_file_error(where, f"has legs of {leg:.3g} units")
-    if unit is not None:
-        stature = stature_of_leg(leg * unit)
-        if not low <= stature <= high:
-            kind = "giant" if stature > high else "dwarf"
-            raise motion_file_error(
-                where,
-                f"has legs of {leg:.4g} units of {unit:.4g} m, those of a {kind} of "
-                f"{stature:.3g} m; should be {low} to {high} m: unit_m",
-            )
-        return unit, ()
-    if unit_of_file and low <= stature_of_leg(leg * unit_of_file) <= high:
-        return unit_of_file, ()
-    low, high = LIKELY_STATURES
-    for name, candidate in UNITS.items():
-        if low <= stature_of_leg(leg * candidate) <= high:
-            return candidate, _describe_unit(leg, unit_of_file, name)
+    (low, high), units = STATURES, UNITS if unit is None else {f"{unit:.4g} m": unit}
+    statures = {name: stature_of_leg(leg * size) for name, size in units.items()}
+    for name, stature in statures.items():
+        if low <= stature <= high:
+            return units[name]
+    sizes = " or ".join(f"of {stature:.3g} m in {name}" for name, stature in statures.items())
     raise motion_file_error(
         where,
-        f"has legs of {leg:.4g} units, which make a person of {low} to {high} m in none of "
-        f"{', '.join(UNITS)}; unit_m should say what a unit is",
+        f"has legs of {leg:.4g} units, those of a person {sizes}; should be {low} to {high} m: "
+        "unit_m of its class says how many metres a unit is (--unit M; inches: 0.0254, CMU's BVH: "
+        "0.0564)",
     )
 
 
-def _describe_unit(leg: float, unit_of_file: float | None, taken_for: str) -> tuple[str, ...]:
-    """Describe the unit of a file that makes no person; () where the file states none."""
-    if not unit_of_file:
-        return ()
-    return (
-        f"it says that a unit is {unit_of_file:g} m, of which somebody would be "
-        f"{stature_of_leg(leg * unit_of_file):.4g} m tall: taken for {taken_for} (unit_m, --unit)",
-    )
-
-
-def _find_up_axis(
-    file: MotionRecording, blends: list[JointMean], p: Float, rate: float, units: float
-) -> tuple[str, str]:
-    """Find the axis that points up, and what to say where it is only assumed.
-
-    Args:
-        file: Recording, which may have a rest pose.
-        blends: Means of its joints that ours are.
-        p: Positions [frames, 15, 3] in its unit.
-        rate: Frames per second.
-        units: Stature in its unit.
-    """
-    rest_pose = None
-    if file.rest is not None:
-        rest_pose = blend(file.rest[None], [*range(len(file.names))], blends)[0]
-    up = find_up_axis(p, rate, units, rest_pose)
-    if up.name is None:
-        reason = up.remark or "for nobody stands in it"
-        raise motion_file_error(
-            file.where,
-            f"does not tell which axis points up, {reason}; up: y of its class would say so "
-            "(--up y)",
-        )
-    return up.name, up.remark
-
-
-def _is_mirrored(p: Float) -> bool:
-    """Whether left and right are exchanged, as in left-handed axes: knees bend backwards.
+def _refuse_mirror_image(p: Float, left_handed: bool, where: str) -> None:
+    """Refuse knees that bend backwards: left and right are exchanged, as in left-handed axes.
 
     Positions [frames, 15, 3] over the stature, z up; people who lie tell nothing.
     """
@@ -345,7 +272,13 @@ def _is_mirrored(p: Float) -> bool:
     legs = (p[:, len(JOINTS) :] + p[:, _ANKLES]) / 2
     bend = np.einsum("fka,fa->f", (p[:, _KNEES] - legs)[..., :2], ahead) / len(_KNEES)
     upright = p[:, _HEAD, 2] - p[:, _ANKLES, 2].mean(axis=1) > UPRIGHT / 2
-    return bool(upright.any() and bend[upright].mean() < -BENT)
+    if upright.any() and bend[upright].mean() < -BENT:
+        other = "false" if left_handed else "true"
+        raise motion_file_error(
+            where,
+            "has knees that bend backwards, as in left-handed axes or a mirror image; left_handed: "
+            f"{other} of its class would say so ({'without ' * left_handed}--left-handed)",
+        )
 
 
 def _smooth(p: Float, rate: float, low_pass: float | None) -> Float:

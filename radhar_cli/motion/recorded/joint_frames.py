@@ -1,6 +1,6 @@
 """The thirteen joints and the hip joints over the frames of a file, in its own units and axes."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -33,19 +33,6 @@ class JointFrames:
     usable: tuple[float, float] | None = None
     lost: tuple[LostSection, ...] = ()
     bridged: str = ""
-
-    def cut(self, first: int, last: int) -> "JointFrames":
-        """Keep the frames from one to another, from the first of which seconds count then."""
-        start, seconds = first / self.rate, (last - first) / self.rate
-        usable = self.usable and (
-            max(0.0, self.usable[0] - start),
-            min(seconds, self.usable[1] - start),
-        )
-        lost = tuple(
-            replace(section, begin=section.begin - start, end=section.end - start)
-            for section in self.lost
-        )
-        return replace(self, positions=self.positions[first : last + 1], usable=usable, lost=lost)
 
 
 def read_frames(file: MotionRecording, blends: list[JointMean], rate: float | None) -> JointFrames:

@@ -21,12 +21,14 @@ class JointSet:
         names: Names of the joints in the set's own order; "Hip|Pelvis" is called either.
         sources: {joint of ours: the joints whose mean it is} where names alone would mislead.
         is_by_axis: Whether its maker's columns are all x, then all y, then all z.
+        up: Axis that points up by its maker's document; None where it depends on the set-up.
     """
 
     title: str
     names: tuple[str, ...]
     sources: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
     is_by_axis: bool = False
+    up: str | None = None
 
     @property
     def spellings(self) -> tuple[frozenset[str], ...]:
@@ -42,11 +44,13 @@ def _read_sets(text: str) -> Mapping[str, JointSet]:
         key, _, title = head.removeprefix("[").partition("] ")
         names = [line for line in lines if " = " not in line and line != BY_AXIS]
         sources = dict(line.split(" = ") for line in lines if " = " in line)
+        up = sources.pop("up", None)
         sets[key] = JointSet(
             title,
             tuple(expand_words(" ".join(names))),
             {ours: tuple(theirs.split()) for ours, theirs in sources.items()},
             BY_AXIS in lines,
+            up,
         )
     return MappingProxyType(sets)
 

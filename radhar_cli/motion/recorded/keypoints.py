@@ -46,6 +46,7 @@ class Keypoints:
         unit: Length of a unit, m; None where the file does not say.
         remarks: Remarks of the reader on the file, in words.
         are_columns: Whether the numbers of a frame are a row of columns, in an order of its maker.
+        up: Axis that points up by the format, such as "y"; None where it says none.
     """
 
     where: str
@@ -57,8 +58,9 @@ class Keypoints:
     unit: float | None = None
     remarks: tuple[str, ...] = field(default=())
     are_columns: bool = False
+    up: str | None = None
 
-    rest, at_bone_ends = None, False
+    at_bone_ends = False
 
     @property
     def parents(self) -> tuple[int | None, ...]:

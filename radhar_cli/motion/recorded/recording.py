@@ -22,7 +22,7 @@ class MotionRecording(Protocol):
         where: Name of the file in messages.
         names: Names of the J joints.
         parents: Number of the joint that each one hangs on, None for a root.
-        rest: Positions [J, 3] of the skeleton without rotations; None where the file has none.
+        up: Axis that points up by the format, such as "y"; None where it says none.
         rate: Frames per second; None where the file does not say.
         unit: Length of a file unit, m; None where the file does not say.
         at_bone_ends: Whether the joint of a name is where its bone ends, as in ASF; else it is
@@ -36,7 +36,7 @@ class MotionRecording(Protocol):
     @property
     def parents(self) -> tuple[int | None, ...]: ...
     @property
-    def rest(self) -> Float | None: ...
+    def up(self) -> str | None: ...
     @property
     def rate(self) -> float | None: ...
     @property

@@ -37,7 +37,7 @@ class Source:
     settings: dict[str, Any] = field(default_factory=dict)
     notes: tuple[str, ...] = ()  # findings on opening it, in words
     # sign of the beat frequencies where the samples do not show it
-    usual_beat: Literal["negative", "positive"] = "negative"
+    usual_beat: Literal["negative", "positive"] | None = None
 
     @property
     def name(self) -> str:

@@ -23,7 +23,13 @@ from radhar_cli.files.untrusted import regular_size
 from radhar_cli.numerics.constants import SPEED_OF_LIGHT
 from radhar_cli.readers.captures.array_axes import as_source
 from radhar_cli.readers.captures.settings import AxisName
-from radhar_cli.readers.captures.source import CaptureFiles, CaptureFormat, Parts, Source
+from radhar_cli.readers.captures.source import (
+    CaptureFiles,
+    CaptureFormat,
+    MissingKeysError,
+    Parts,
+    Source,
+)
 from radhar_cli.readers.captures.stored_arrays import StoredArray
 
 CHIP_HZ = 23.328e9  # sampling frequency of the X4
@@ -35,7 +41,8 @@ BASEBAND = np.dtype(
      ("first", "<f4")]
 )  # fmt: skip
 FLOATS = np.dtype([("kind", "<u4"), ("counter", "<u4"), ("count", "<u4")])
-CARRIER_SHARE = 0.25, 0.4  # of the sampling frequency: 7.29 and 8.748 GHz of 23.328 GHz
+IQ: tuple[AxisName, ...] = ("pulse", "iq", "sample")
+WAVES: tuple[AxisName, ...] = ("pulse", "sample")
 
 
 def _is_xethru(path: Path, head: bytes) -> bool:
@@ -92,7 +99,7 @@ def _open_xethru(capture: CaptureFiles) -> Source:
     notes = [f"{lost} gaps in the counter of profiles, taken as uniform"] if lost else []
     settings: dict[str, Any] = {"holds": "profiles"}
     is_polar = is_baseband and "_ap_" in path.name
-    is_iq = is_baseband or not _holds_waves(records["values"][: min(pulses, 100)])
+    is_iq = is_baseband or _is_iq(path, capture.settings.axes)
     if is_baseband:
         settings |= {"carrier_hz": float(header["carrier"]), "range_step_m": float(header["step"])}
         settings["first_range_m"] = max(float(header["first"]), 0.0)
@@ -102,8 +109,7 @@ def _open_xethru(capture: CaptureFiles) -> Source:
     kind = "amplitude and phase" if is_polar else "I, then Q" if is_iq else "waves of the pulse"
     notes.append(f"recording of an X4: {kind}, {count // (1 + is_iq)} bins a profile")
     load = partial(_load, path, record, pulses, is_iq)
-    axes: tuple[AxisName, ...] = ("pulse", "iq", "sample") if is_iq else ("pulse", "sample")
-    named = capture.settings.model_copy(update={"axes": axes})
+    named = capture.settings.model_copy(update={"axes": IQ if is_iq else WAVES})
     source = as_source(path, StoredArray(str(path), load), named)
     read = partial(_read_polar, source) if is_polar else source.read
     return replace(source, read=read, settings=settings, notes=(*source.notes, *notes))
@@ -122,12 +128,19 @@ def _read_polar(source: Source, first: int, stop: int) -> Parts:
     return np.stack([values.real, values.imag], axis=-1).astype(np.float32)
 
 
-def _holds_waves(values: NDArray[np.float32]) -> bool:
-    """Whether profiles [pulse, number] hold waves of the pulse, by where their spectrum lies."""
-    power = np.mean(np.abs(np.fft.rfft(values - values.mean(axis=1, keepdims=True))) ** 2, axis=0)
-    share = np.arange(power.size) / values.shape[1]
-    low, high = CARRIER_SHARE
-    return bool(power[(share > low) & (share < high)].sum() > 0.5 * power.sum())
+def _is_iq(path: Path, axes: tuple[AxisName, ...] | None) -> bool:
+    """Whether floats are I, then Q, of down-converted profiles, or waves of the pulse.
+
+    Raises:
+        MissingKeysError: no key says it, and no header does.
+    """
+    if axes not in (IQ, WAVES):
+        raise MissingKeysError(
+            f"{path}: does not say whether the chip converted its profiles down, to I and then Q "
+            "(axes=[pulse,iq,sample]), or wrote waves of the pulse (axes=[pulse,sample])",
+            {"axes": "[pulse,iq,sample]"},
+        )
+    return axes == IQ
 
 
 XETHRU = CaptureFormat(".dat of XeThru's X4", _is_xethru, _open_xethru)

@@ -59,7 +59,7 @@ class Amc:
     line: int
     first_frame: int  # number of the first frame
 
-    rate, at_bone_ends = RATE, True
+    up, rate, at_bone_ends = "y", RATE, True
 
     @property
     def names(self) -> tuple[str, ...]:
@@ -68,14 +68,6 @@ class Amc:
     @property
     def parents(self) -> tuple[int | None, ...]:
         return tuple(bone.parent for bone in self.tree)
-
-    @property
-    def rest(self) -> Float:
-        """Positions [J, 3] of the bones' ends without rotations."""
-        ends = np.zeros((len(self.tree), 3))
-        for number, bone in enumerate(self.tree):
-            ends[number] = bone.reach + (0 if bone.parent is None else ends[bone.parent])
-        return ends
 
     def place(self, frame: int) -> str:
         return f"{self.where}: frame {self.first_frame + frame}"

@@ -60,7 +60,8 @@ class Bvh:
     start: int
     line: int
 
-    unit, at_bone_ends = None, False
+    # Y is up by convention; a unit is what its program has.
+    up, unit, at_bone_ends = "y", None, False
 
     @property
     def names(self) -> tuple[str, ...]:
@@ -69,16 +70,6 @@ class Bvh:
     @property
     def parents(self) -> tuple[int | None, ...]:
         return tuple(joint.parent for joint in self.joints)
-
-    @property
-    def rest(self) -> Float:
-        """Positions [J, 3] of the joints by their offsets alone."""
-        rest_positions = np.zeros((len(self.joints), 3))
-        for number, joint in enumerate(self.joints):
-            rest_positions[number] = joint.offset
-            if joint.parent is not None:
-                rest_positions[number] += rest_positions[joint.parent]
-        return rest_positions
 
     def place(self, frame: int) -> str:
         return f"{self.where}:{self.line + frame}"

@@ -7,7 +7,7 @@ are often markers on the skin; POINT:LABELS names them. Nothing but points is re
 
 import struct
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -20,6 +20,7 @@ MAGIC = 0x50
 INTEL, DEC, MIPS = 84, 85, 86
 MOST_PARAMETERS = 5000
 UNITS = {"m": 1.0, "cm": 0.01, "mm": 0.001, "in": 0.0254, "inches": 0.0254}
+AXES = ("x", "y", "z", "-x", "-y", "-z")
 _BYTES_OF_TYPE = {-1: 1, 1: 1, 2: 2, 4: 4}
 
 
@@ -60,7 +61,11 @@ def read_c3d(data: bytes, where: str) -> Keypoints:
         raise motion_file_error(where, "is a damaged C3D file") from None
     unit = _texts(parameters.get("POINT:UNITS"))
     unit_m = UNITS.get(unit[0].lower()) if unit else None
-    return make_keypoints(where, names, values, header.rate, unit=unit_m)
+    # Y_SCREEN is the axis that points up on a screen, such as +Z; laboratories choose their own.
+    screen = _texts(parameters.get("POINT:Y_SCREEN"))
+    up = screen[0].lower().removeprefix("+") if screen else None
+    up = up if up in AXES else None
+    return replace(make_keypoints(where, names, values, header.rate, unit=unit_m), up=up)
 
 
 def _read_head(data: bytes, where: str) -> tuple[_Header, dict[str, _Parameter]]:

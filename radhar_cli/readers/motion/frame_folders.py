@@ -6,7 +6,7 @@ from itertools import pairwise
 from pathlib import Path
 
 from radhar_cli.errors import MotionFileError
-from radhar_cli.files.untrusted import refuse_outside, regular_size
+from radhar_cli.files.untrusted import bytes_of, refuse_outside
 from radhar_cli.motion.recorded.recording import MAX_FRAMES, motion_file_error
 from radhar_cli.readers.motion.json_poses import MAX_JSON
 
@@ -68,14 +68,7 @@ def _step(numbers: list[int]) -> int:
 def _read_file(path: Path, folder: Path) -> bytes:
     """Bytes of a regular file of a folder."""
     refuse_outside(path, folder)
-    try:
-        size = regular_size(path)
-        if size > MAX_JSON:
-            raise motion_file_error(str(path), f"is {size} bytes; should be at most {MAX_JSON}")
-        with path.open("rb") as file:
-            return file.read(MAX_JSON).removeprefix(b"\xef\xbb\xbf")
-    except OSError as error:
-        raise MotionFileError(f"{path}: cannot be read ({error.strerror})") from None
+    return bytes_of(path, MAX_JSON, MotionFileError).removeprefix(b"\xef\xbb\xbf")
 
 
 def _describe_folder(names: list[str]) -> str:

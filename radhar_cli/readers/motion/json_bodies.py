@@ -19,9 +19,12 @@ from radhar_cli.numerics.arrays import Float
 
 # MediaPipe's landmarks of an image; some write its world landmarks under these names, too.
 LANDMARKS = ("landmarks", "pose_landmarks", "poselandmarks", "landmark")
+WORLD_LANDMARKS = (
+    *("pose_world_landmarks", "poseworldlandmarks", "world_landmarks", "worldlandmarks"),
+)
 PIXELS = ("keypoints_2d", "keypoints2d", "pose_keypoints_2d")
 JOINTS = (
-    *("pose_world_landmarks", "poseworldlandmarks", "world_landmarks", "worldlandmarks"),
+    *WORLD_LANDMARKS,
     *("keypoints_3d", "keypoints3d", "pose_keypoints_3d", "joints_3d", "joints3d", "pose_3d"),
     *("positions", "joint_positions", "joints", "keypoint", "keypoints", "skeleton", "xyz"),
     *("joints19", "joints15", "joints26"),
@@ -42,6 +45,7 @@ _MAKERS = {
     ("keypoint", 34): "zed34",
     ("keypoint", 38): "zed38",
     ("joint_positions", 32): "azure32",
+    **{(key, 33): "blazepose33" for key in (*WORLD_LANDMARKS, *LANDMARKS)},
 }
 _TIMES = ("time", "timestamp", "t", "times", "timestamps", "univtime", "relativetime", "ts")
 _IDENTITIES: tuple[str, ...] = (
@@ -89,6 +93,7 @@ class JsonBody(NamedTuple):
     joints: Float  # [J, 3]; NaN where a joint is lost
     names: list[str] | None
     are_landmarks: bool = False  # by their key, which is that of landmarks of an image
+    up: str | None = None  # axis that points up by the maker who has such a key
 
 
 class JsonFrame(NamedTuple):
@@ -189,14 +194,16 @@ def _read_body(body: Any, place: str) -> JsonBody | None:
     joints, names = _read_joints(value, place, width)
     if joints is None:
         return None
-    if (maker := _MAKERS.get((key or "", len(joints)))) and names is None:
+    maker = _MAKERS.get((key or "", len(joints))) if names is None else None
+    up = JOINT_SETS[maker].up if maker else None
+    if maker:
         names = [name.split("|")[0] for name in JOINT_SETS[maker].names]
     confidence = next((keys[name] for name in _CONFIDENCES if name in keys), None)
     if isinstance(confidence, list) and len(confidence) == len(joints):
         is_lost = [is_real(c) and c <= 0 for c in confidence]
         joints[np.array(is_lost, dtype=bool)] = np.nan
     identity = next((str(keys[name]) for name in _IDENTITIES if is_identity(keys.get(name))), None)
-    return JsonBody(identity, joints, names, key in LANDMARKS)
+    return JsonBody(identity, joints, names, key in LANDMARKS, up)
 
 
 def is_identity(value: Any) -> bool:
@@ -231,7 +238,7 @@ def _read_joints(
     if not joints:
         return None, None
     if isinstance(joints, list) and isinstance(joints[0], list) and len(joints) == 1:
-        joints = joints[0]  # of one person, in a list of people
+        names, joints = None, joints[0]  # of one person, in a list of people
         if not joints:
             return None, None
     if not isinstance(joints, list) or len(joints) > 5 * MAX_JOINTS:

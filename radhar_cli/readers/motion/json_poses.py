@@ -9,6 +9,7 @@ import json
 import re
 from collections import Counter
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -24,6 +25,7 @@ from radhar_cli.readers.motion.json_bodies import (
     LANDMARKS,
     NORMALISED,
     PIXELS,
+    WORLD_LANDMARKS,
     JsonBody,
     JsonFrame,
     is_real,
@@ -87,7 +89,8 @@ def _frames_of(document: Mapping[str, Any], keys: Mapping[str, Any], where: str)
         if isinstance(value, list) and not (key == "joints" and _is_texts(value)):
             if key in JOINTS and _is_flat(value):
                 break
-            return [{key: frame} for frame in value] if key in LANDMARKS else value, times
+            is_of_maker = key in (*WORLD_LANDMARKS, *LANDMARKS)
+            return [{key: frame} for frame in value] if is_of_maker else value, times
         if isinstance(value, dict) and key in _FRAMES:
             return _frames_of(value, lower_keys(value), where)
     by_joint = _frames_by_joint(document)
@@ -162,7 +165,8 @@ def _recording(
         names = None
     unit = next((frame.time_unit for frame in frames if frame.time_unit), None)
     seconds = None if rate is not None else _seconds(times, frames, unit, where)
-    return make_keypoints(where, names, values, rate, seconds, None, remarks)
+    keypoints = make_keypoints(where, names, values, rate, seconds, None, remarks)
+    return replace(keypoints, up=known[0].up)
 
 
 def _choose_body(

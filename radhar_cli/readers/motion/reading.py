@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from radhar_cli.errors import MotionFileError
-from radhar_cli.files.untrusted import refuse_outside, regular_size
+from radhar_cli.files.untrusted import bytes_of, refuse_outside
 from radhar_cli.motion.recorded.recording import MAX_BYTES, MotionRecording, motion_file_error
 from radhar_cli.readers.motion.amc import MAX_SKELETON, read_amc
 from radhar_cli.readers.motion.bvh import read_bvh
@@ -106,13 +106,13 @@ def read_motion(path: Path, skeleton: Path | None = None) -> MotionBytes:
         return MotionBytes(path, read_frame_folder(path), None)
     if suffix not in SUFFIXES:
         raise motion_file_error(str(path), describe_unknown(path))
-    data = _read_bytes(path, MAX_BYTES)
+    data = bytes_of(path, MAX_BYTES, MotionFileError)
     asf_bytes = None
     if suffix == ".amc":
         asf = skeleton or find_skeleton(path)
         if asf.suffix.lower() != ".asf":
             raise motion_file_error(str(asf), "should be an .asf file")
-        asf_bytes = (asf, _read_bytes(asf, MAX_SKELETON))
+        asf_bytes = (asf, bytes_of(asf, MAX_SKELETON, MotionFileError))
     return MotionBytes(path, data, asf_bytes)
 
 
@@ -144,14 +144,3 @@ def find_skeleton(path: Path) -> Path:
         f"needs its skeleton beside it, {expected}; or name it: "
         "skeleton: FILE.asf of its class (--skeleton FILE.asf)",
     )
-
-
-def _read_bytes(path: Path, max_bytes: int) -> bytes:
-    try:
-        size = regular_size(path)
-        if size > max_bytes:
-            raise motion_file_error(str(path), f"is {size} bytes; should be at most {max_bytes}")
-        with path.open("rb") as file:
-            return file.read(max_bytes)
-    except OSError as error:
-        raise MotionFileError(f"{path}: cannot be read ({error.strerror})") from None

@@ -137,7 +137,7 @@ def _numbers_of(table: TextTable, begin: int, columns: Sequence[int], width: int
 
 
 def read_trc(data: bytes, where: str) -> Keypoints:
-    """Read a TRC file: its rate and units, names of joints, and their positions.
+    """Read a TRC file: its rate and units, names of joints, and their positions, y up (OpenSim).
 
     Args:
         data: Bytes of the file.
@@ -164,7 +164,7 @@ def read_trc(data: bytes, where: str) -> Keypoints:
     table = TextTable(where, lines[5:], "\t", False, motion_file_error, first=5)
     numbers = _numbers_of(table, 0, range(2, 2 + 3 * len(names)), None)
     values = numbers.reshape(len(numbers), len(names), 3)
-    return make_keypoints(where, names, values, float(rate), unit=UNITS[unit])
+    return replace(make_keypoints(where, names, values, float(rate), unit=UNITS[unit]), up="y")
 
 
 def _without_names(table: TextTable) -> Keypoints:
@@ -179,17 +179,13 @@ def _without_names(table: TextTable) -> Keypoints:
     numbers = _numbers_of(table, begin, range(width), width)
     columns = width - width % 3
     if np.array_equal(numbers[0, -columns:], np.arange(columns)):  # as pandas names columns
-        numbers = numbers[1:]
-    if width % 3 == 1:  # the first column is time, or the number of the frame
-        first, numbers = numbers[:, 0], numbers[:, 1:]
-        is_time = len(first) > 1 and not (np.diff(first) == 1).all()
-        times = first if is_time else None
-    elif width % 3 == 0:
-        times = None
-    else:
+        is_index = width > columns and not table.rows[begin][0].strip()
+        numbers = numbers[1:, is_index:]
+    if numbers.shape[1] % 3:
         raise motion_file_error(
-            where, f"has {width} columns without names; should have x, y, z of each joint"
+            where,
+            f"has {width} columns without names; should have x, y, z of each joint, or a line "
+            "above them that names all: time,nose_x,nose_y,nose_z,...",
         )
-    rate = None if times is not None else rate_above(table, begin)
-    values = arrange_positions(numbers, None, where)
-    return replace(make_keypoints(where, None, values, rate, times), are_columns=True)
+    values, rate = arrange_positions(numbers, None, where), rate_above(table, begin)
+    return replace(make_keypoints(where, None, values, rate), are_columns=True)

@@ -141,6 +141,8 @@ def _motion_file(motion: Motion) -> dict[str, Any] | None:
         "end_s": motion.end_used,
         "loops": cycle is not None,
         "up": motion.clip.up,
+        "unit_m": motion.clip.unit,
+        "rate_hz": motion.clip.rate,
         "lasts_s": motion.clip.seconds,
         "stature_m": motion.clip.stature,
     }

@@ -75,8 +75,7 @@ def test_a_pose_known_by_hand() -> None:
         ends(last_first, amc)[2], [[0, 0, 0], [3, 0, 0], [5, 0, 0]], atol=1e-12
     )
     file = read_amc(amc.encode(), "x.amc", ASF.encode(), "x.asf")
-    assert (file.rate, file.unit) == (120.0, pytest.approx(0.0254 / 0.45))
-    np.testing.assert_allclose(file.rest, [[0, 0, 0], [0, -3, 0], [0, -5, 0]])
+    assert (file.rate, file.up, file.unit) == (120.0, "y", pytest.approx(0.0254 / 0.45))
 
 
 def test_frames_may_begin_at_any_number_and_angles_be_radians() -> None:

@@ -1,10 +1,11 @@
 """A clip becomes a person in a room: axes, size, floor, low-pass, heading, ends."""
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
+from helpers.poses import answered_clip
 from helpers.recorded import frames, write_npz
 
 from radhar_cli.errors import MotionFileError
@@ -22,7 +23,7 @@ HIP, HEAD = JOINTS.index("hip"), JOINTS.index("head")
 
 
 def clip(positions: Float, rate: float = 120.0, **how: object) -> Clip:
-    return make_clip(Keypoints("x.npz", WANTED, positions, rate), **how)  # type: ignore[arg-type]
+    return answered_clip(Keypoints("x.npz", WANTED, positions, rate), **how)  # type: ignore[arg-type]
 
 
 def mover(one: Clip, **how: object) -> FileMotion:
@@ -32,7 +33,7 @@ def mover(one: Clip, **how: object) -> FileMotion:
 
 @pytest.mark.parametrize("up", ["x", "y", "z", "-x", "-y", "-z"])
 def test_any_axis_may_be_up_and_any_unit_will_do(up: str) -> None:
-    """The same motion in six frames of axes and in cm is the same clip; the axis is found."""
+    """The same motion in six frames of axes and in cm is the same clip; the axis is asked for."""
     p = frames(seconds=1.0)
     right = clip(p)
     axis, sign = "xyz".index(up[-1]), -1 if up[0] == "-" else 1
@@ -47,59 +48,40 @@ def test_any_axis_may_be_up_and_any_unit_will_do(up: str) -> None:
     assert clip(100 * q, up=up).positions[:, 0, 2].mean() > 0
 
 
-@dataclass(frozen=True)
-class Posed(Keypoints):
-    """Positions with a rest pose of their own."""
-
-    rest: Float | None = None  # type: ignore[assignment]
-
-
-@pytest.mark.parametrize("order", [[0, 1, 2], [1, 2, 0], [2, 0, 1]])
-def test_up_is_what_the_moving_body_says(order: list[int]) -> None:
-    """The rest pose may stand along any axis, as in games, where the root of each frame turns."""
-    p = frames(seconds=1.0)
-    for sign in (1, -1):
-        file = Posed("x", WANTED, p, 120.0, rest=sign * p[0][:, order])
-        one = make_clip(file)
-        assert one.up == "z"
-        np.testing.assert_allclose(one.positions, clip(p).positions)
-
-
 def test_a_camera_whose_y_points_down(tmp_path: Path) -> None:
     """x to the right, y down, z ahead of the camera; the person walks away from it."""
     p = frames(seconds=1.0)
     seen = np.stack([-p[..., 1], -p[..., 2], p[..., 0]], axis=2)
     one = clip(seen)
     assert one.up == "-y"
-    assert not one.mirrored
     np.testing.assert_allclose(one.positions, clip(p).positions, atol=1e-9)
 
 
 @pytest.mark.parametrize("activity", ["walking", "punching", "kicking", "sitting_down", "grabbing"])
-def test_a_mirror_image_is_turned_back(activity: str) -> None:
+def test_a_mirror_image_is_asked_for_and_turned_back(activity: str) -> None:
     """Of left-handed axes (y up in Unity), or of a camera that mirrors: knees bend forwards."""
     p = frames(activity, 2.5)
     unity = np.stack([-p[..., 1], p[..., 2], p[..., 0]], axis=2)  # x right, y up, z ahead
     right_handed = np.stack([p[..., 1], p[..., 2], p[..., 0]], axis=2)
-    assert not clip(right_handed).mirrored
-    one = clip(unity)
-    assert one.mirrored
+    assert clip(right_handed).up == "y"
+    with pytest.raises(MotionFileError, match=r"knees that bend backwards.*\(--left-handed\)"):
+        clip(unity)
+    one = clip(unity, left_handed=True)
     t = np.linspace(0, 2, 9)
     a, b = (mover(each).positions(t) for each in (clip(p), one))
     np.testing.assert_allclose(a, b, atol=1e-9)
 
 
-def test_the_rest_pose_tells_the_up_axis_where_nobody_stands(tmp_path: Path) -> None:
+def test_where_nobody_stands_the_axis_is_asked_for() -> None:
     p = frames("stationary", 1.0)
     turned = np.linspace(0, 2 * np.pi, len(p))
     c, s = np.cos(turned)[:, None], np.sin(turned)[:, None]
     middle = p.mean(axis=(0, 1))
     q = p - middle
     rolls = np.stack([c * q[..., 0] - s * q[..., 2], q[..., 1], s * q[..., 0] + c * q[..., 2]], 2)
-    with pytest.raises(MotionFileError, match=r"which axis points up, .* \(--up y\)"):
-        clip(rolls)
+    with pytest.raises(MotionFileError, match=r"which axis points up .* \(--up -?[xyz]\)"):
+        make_clip(Keypoints("x.npz", WANTED, rolls, 120.0))
     assert clip(rolls, up="y").up == "y"
-    assert make_clip(Posed("x", WANTED, rolls, 120.0, rest=p[0])).up == "z"
 
 
 def test_legs_give_the_stature_and_ankles_the_floor() -> None:
@@ -300,7 +282,9 @@ def test_torso_is_that_of_positions() -> None:
 
 def test_a_rig_without_hip_joints_has_them_at_the_hip(tmp_path: Path) -> None:
     p = frames(seconds=1.0)
-    one = make_clip(read_motion(write_npz(tmp_path / "x.npz", p[:, :13], names=JOINTS)).recording())
+    one = answered_clip(
+        read_motion(write_npz(tmp_path / "x.npz", p[:, :13], names=JOINTS)).recording()
+    )
     motion, t = mover(one), np.array([0.3])
     np.testing.assert_allclose(motion.hip_joints(t)[:, 0], motion.positions(t)[:, HIP], atol=1e-12)
     assert not one.hip_joints

@@ -13,6 +13,7 @@ from helpers.poses import (
     RATE,
     WALKER,
     T,
+    answered_clip,
     camera,
     clip_of,
     csv_text,
@@ -23,7 +24,6 @@ from helpers.poses import (
 )
 
 from radhar_cli.errors import MotionFileError
-from radhar_cli.motion.recorded.clip import make_clip
 from radhar_cli.motion.recorded.joint_sets import JOINT_SETS
 from radhar_cli.motion.recorded.keypoints import make_keypoints
 from radhar_cli.numerics.arrays import Float
@@ -99,7 +99,7 @@ def test_who_says_the_unit_is_believed(file: str, tmp_path: Path) -> None:
 def test_world_landmarks_and_rooms_are_read() -> None:
     """About the hips, and at places of positive x and y."""
     for p in (camera(BLAZE) - camera(BLAZE)[:, 23:25].mean(axis=1, keepdims=True), BLAZE + 3):
-        clip = make_clip(make_keypoints("x", names("blazepose33"), p, RATE))
+        clip = answered_clip(make_keypoints("x", names("blazepose33"), p, RATE))
         assert 1.7 < clip.stature < 1.85
 
 
@@ -107,16 +107,15 @@ def test_who_grows_as_he_comes_nearer_is_said() -> None:
     distance = np.linspace(4, 2, len(T))[:, None, None]
     p = 700 * (camera(COCO) - [0, 0.2, 0]) / distance
     p[..., 2] = 400 * (camera(COCO)[..., 2] + distance[..., 0])
-    clip = make_clip(make_keypoints("x", names("coco17"), p, RATE), unit=0.0025, up="-y")
+    clip = answered_clip(make_keypoints("x", names("coco17"), p, RATE), unit=0.0025, up="-y")
     assert any("same bones are up to 1." in remark for remark in clip.remarks)
 
 
-def test_a_unit_that_makes_no_person_is_said(tmp_path: Path) -> None:
+def test_a_unit_that_makes_no_person_is_asked_for(tmp_path: Path) -> None:
     text = trc_text(COCO, names("coco17")).replace("\tmm\t", "\tm\t")
-    clip = clip_of(tmp_path / "x.trc", text.encode())
-    assert "says that a unit is 1 m, of which somebody would be 17" in clip.remarks[0]
-    assert "taken for mm" in clip.remarks[0]
-    assert 1.7 < clip.stature < 1.85
+    with pytest.raises(MotionFileError, match=r"of 1\.7\de\+03 m in 1 m; .*\(--unit M"):
+        clip_of(tmp_path / "x.trc", text.encode())
+    assert 1.7 < clip_of(tmp_path / "x.trc", unit=0.001).stature < 1.85
 
 
 WORLD = camera(BLAZE) - camera(BLAZE)[:, 23:25].mean(axis=1, keepdims=True)
@@ -145,7 +144,7 @@ def test_values_tell_world_landmarks_of_any_key(key: str, form: str, tmp_path: P
     assert WORLD.min() < -0.5
     data = json.dumps(landmark_files(key, WORLD)[form]).encode()
     clip = clip_of(tmp_path / "x.json", data)
-    true = make_clip(make_keypoints("x", names("blazepose33"), WORLD, RATE))
+    true = answered_clip(make_keypoints("x", names("blazepose33"), WORLD, RATE))
     assert clip.stature == pytest.approx(true.stature)
     assert np.abs(clip.positions - true.positions).max() < 1e-9
 
@@ -164,6 +163,6 @@ def test_landmarks_of_who_is_partly_outside_of_the_image_are_refused(
 @pytest.mark.parametrize("suffix", ["npy", "npz", "csv"])
 def test_world_landmarks_are_read_from_other_files(suffix: str, tmp_path: Path) -> None:
     name, write = FILES[suffix]
-    how = {"rate": RATE} if suffix == "npy" else {}
+    how = {"rate": RATE, "joints": "blazepose33"} if suffix == "npy" else {}
     clip = clip_of(tmp_path / name, write(WORLD, names("blazepose33")), **how)
     assert 1.7 < clip.stature < 1.85

@@ -85,7 +85,7 @@ H36M = joint_set_errors.poses_of(JOINT_SETS["h36m17"], WALKER)
 OPENPOSE = joint_set_errors.poses_of(JOINT_SETS["openpose25"], WALKER)
 TICKS = np.round(1e7 * T).astype(np.int64) + 635_000_000_000_000_000
 FILES: dict[str, tuple[str, Callable[[], bytes]]] = {
-    "NTU": ("x.skeleton", lambda: skeleton_text([camera(NTU) * [1, -1, 1]]).encode()),
+    "NTU": ("x.skeleton", lambda: skeleton_text([camera(NTU) * [-1, -1, 1]]).encode()),
     "TRC": ("x.trc", lambda: trc_text(OPENPOSE, names("openpose25")).encode()),
     "C3D": ("x.c3d", lambda: c3d_bytes(COCO, names("coco17"))),
     "C3D of integers": ("x.c3d", lambda: c3d_bytes(COCO, names("coco17"), integers=True)),
@@ -137,11 +137,17 @@ FILES: dict[str, tuple[str, Callable[[], bytes]]] = {
 }
 
 
+WITHOUT_NAMES = ("CSV as x1, y1", "JSON of people", "npz without names")
+
+
 @pytest.mark.parametrize("name", FILES)
 def test_the_walker_comes_back(name: str, tmp_path: Path) -> None:
     file, data = FILES[name]
     (tmp_path / file).write_bytes(data())
-    clip = clip_of(tmp_path / file)
+    if name in WITHOUT_NAMES:
+        with pytest.raises(MotionFileError, match=r"33 joints without .*--joints blazepose33"):
+            clip_of(tmp_path / file)
+    clip = clip_of(tmp_path / file, joints="blazepose33" if name in WITHOUT_NAMES else None)
     assert largest_error(clip) < 0.045
     assert clip.rate == pytest.approx(RATE, rel=2e-3)
     assert not clip.bridged
@@ -244,7 +250,7 @@ def test_the_lines_for_a_body_model_name_what_is_there(tmp_path: Path) -> None:
 
 
 def test_a_second_body_that_is_there_briefly_is_no_person(tmp_path: Path) -> None:
-    body = camera(NTU) * [1, -1, 1]
+    body = camera(NTU) * [-1, -1, 1]
     ghost = np.full_like(body, np.nan)
     ghost[10:30] = body[10:30] + 1
     (tmp_path / "x.skeleton").write_text(skeleton_text([ghost, body]))
@@ -257,7 +263,7 @@ def test_a_second_body_that_is_there_briefly_is_no_person(tmp_path: Path) -> Non
 
 
 def test_a_body_that_is_counted_anew_is_one_person(tmp_path: Path) -> None:
-    body = camera(NTU) * [1, -1, 1]
+    body = camera(NTU) * [-1, -1, 1]
     early, late = body.copy(), body.copy()
     early[60:], late[:63] = np.nan, np.nan
     (tmp_path / "x.skeleton").write_text(skeleton_text([early, late]))

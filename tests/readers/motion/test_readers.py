@@ -5,13 +5,12 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from helpers.poses import c3d_bytes
+from helpers.poses import answered_clip, c3d_bytes
 from helpers.recorded import frames, write_amc, write_bvh, write_npz
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import radhar_cli.readers.motion.frames
-from radhar_cli.motion.recorded.clip import make_clip
 from radhar_cli.motion.recorded.names import WANTED, joint_means
 from radhar_cli.motion.recorded.recording import MotionRecording
 from radhar_cli.numerics.arrays import Float
@@ -161,6 +160,6 @@ def test_names_with_umlauts_are_kept(suffix: str, encoding: str, tmp_path: Path)
         for own_name, name in zip(("LeftLeg", "RightLeg"), theirs.values(), strict=True):
             text = re.sub(rf"\b{own_name}\b", name, text)
         path.write_bytes(text.encode(encoding))
-    clip = make_clip(read_motion(path).recording("x"), theirs, rate=120.0)
-    own = make_clip(read_motion(write_npz(tmp_path / "own.npz", p)).recording("x"))
+    clip = answered_clip(read_motion(path).recording("x"), theirs, rate=120.0)
+    own = answered_clip(read_motion(write_npz(tmp_path / "own.npz", p)).recording("x"))
     assert np.abs(clip.positions - own.positions).max() < 1e-3

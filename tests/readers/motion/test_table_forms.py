@@ -6,14 +6,13 @@ from pathlib import Path
 import joint_set_errors
 import numpy as np
 import pytest
-from helpers.poses import COCO, RATE, WALKER, clip_of, csv_text, joint_errors, names
+from helpers.poses import COCO, RATE, WALKER, answered_clip, clip_of, csv_text, joint_errors, names
 from helpers.tables import TABLES, motive, two_lines, vicon
 from hypothesis import given
 from hypothesis import strategies as st
 
 from radhar_cli.errors import MotionFileError
 from radhar_cli.files.plain_text import decode_text
-from radhar_cli.motion.recorded.clip import make_clip
 from radhar_cli.motion.recorded.joint_sets import JOINT_SETS
 from radhar_cli.motion.recorded.names import WANTED
 from radhar_cli.readers.motion.text_tables import read_table
@@ -163,6 +162,6 @@ LINES = st.lists(st.sampled_from(WORDS), max_size=9) | st.lists(
 def test_no_table_ends_in_a_traceback(lines: list[list[str]], separator: str) -> None:
     text = "\n".join(separator.join(line) for line in [*lines, ["1.5"] * 6, ["2.5"] * 6])
     try:
-        make_clip(read_table(text.encode(), "x.csv"))
+        answered_clip(read_table(text.encode(), "x.csv"))
     except MotionFileError as refused:
         assert str(refused).startswith("x.csv")  # noqa: PT017

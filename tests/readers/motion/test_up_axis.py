@@ -1,191 +1,143 @@
-"""The vertical of a file that does not say it: found, or said to be assumed, or refused."""
+"""The vertical of a file: that of its maker's document, or of the config, or asked for."""
 
+import struct
 from collections.abc import Callable
-from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 import pytest
-from helpers.recorded import frames
+from helpers.poses import COCO, NTU, RATE, c3d_bytes, clip_of, names, npz_bytes, trc_text
+from helpers.recorded import frames, write_amc, write_bvh
 
 from radhar_cli.errors import MotionFileError
 from radhar_cli.motion.recorded.clip import Clip, make_clip
-from radhar_cli.motion.recorded.keypoints import Keypoints
+from radhar_cli.motion.recorded.joint_sets import JOINT_SETS
+from radhar_cli.motion.recorded.keypoints import Keypoints, make_keypoints
 from radhar_cli.motion.recorded.names import WANTED
 from radhar_cli.numerics.arrays import Float
 from radhar_cli.readers.motion.reading import read_motion
 
-RATE = 30.0
 AXES: dict[str, Callable[[Float], Float]] = {
     "z": lambda p: p,
     "y": lambda p: np.stack([p[..., 1], p[..., 2], p[..., 0]], axis=-1),
     "-y": lambda p: np.stack([-p[..., 1], -p[..., 2], p[..., 0]], axis=-1),
 }
+OFTEN_LOW = ["lying", "turning_over", "trying_to_get_up", "crawling", "getting_up", "lying_down"]
 
 
-def clip_of(p: Float) -> Clip:
-    return make_clip(Keypoints("x.npz", WANTED, p, RATE))
-
-
-@pytest.mark.parametrize("up", AXES)
-@pytest.mark.parametrize("activity", ["falling", "falling_on_hands", "falling_on_rising"])
-def test_who_falls_and_lies_for_most_of_it_stood_before(activity: str, up: str) -> None:
-    p = frames(activity, 2.0, RATE)
-    lies = np.repeat(p[-1:], 150, axis=0)
-    one = clip_of(AXES[up](np.concatenate([p, lies])))
-    assert one.up == up
-    (remark,) = one.remarks
-    assert f"if {up} points up" in remark
-    assert "--up " in remark
+def clip_in(p: Float, up: str | None = None) -> Clip:
+    return make_clip(Keypoints("x.npz", WANTED, p, RATE), up=up)
 
 
 @pytest.mark.parametrize("up", AXES)
-@pytest.mark.parametrize(
-    "activity", ["lying", "turning_over", "trying_to_get_up", "crawling", "getting_up"]
-)
-def test_who_lies_or_crawls_is_never_stood_up_in_silence(activity: str, up: str) -> None:
+@pytest.mark.parametrize("activity", ["walking", "waving", "falling", "sitting", *OFTEN_LOW])
+def test_positions_alone_tell_no_vertical(activity: str, up: str) -> None:
+    """Who lies straight looks as somebody who stands along another axis."""
     p = AXES[up](frames(activity, 2.0, RATE))
-    try:
-        one = clip_of(p)
-    except MotionFileError as refused:
-        assert "--up" in str(refused)  # noqa: PT017
-    else:
-        assert one.up == up or any(f"{one.up} is assumed" in remark for remark in one.remarks)
+    with pytest.raises(MotionFileError, match=r"^x\.npz: .* which axis points up .*\(--up -?\w\)"):
+        clip_in(p)
+    assert clip_in(p, up).up == up
 
 
 @pytest.mark.parametrize("up", AXES)
-def test_who_crawls_away_tells_no_vertical(up: str) -> None:
-    with pytest.raises(MotionFileError, match=r"which axis points up.*\(--up y\)"):
-        clip_of(AXES[up](frames("crawling", 6.0, RATE)))
+def test_the_axis_that_is_proposed_is_that_of_who_stands(up: str) -> None:
+    with pytest.raises(MotionFileError, match=rf"along {up} in 100% of .*up: {up} of .*--up {up}"):
+        clip_in(AXES[up](frames("walking", 2.0, RATE)))
 
 
-def test_of_two_axes_that_fit_both_are_named() -> None:
-    """Who gets up slowly along y of a file might as well lie down along its z."""
-    with pytest.raises(MotionFileError, match="somebody is upright along y and z"):
-        clip_of(AXES["y"](frames("getting_up", 6.0, RATE)))
+KINECT, AZURE = names("kinect2_25"), names("azure32")
 
 
-@pytest.mark.parametrize("up", AXES)
-@pytest.mark.parametrize("activity", ["walking", "squatting", "jumping", "running"])
-def test_who_walks_or_squats_needs_no_remark(activity: str, up: str) -> None:
-    one = clip_of(AXES[up](frames(activity, 3.0, RATE)))
-    assert one.up == up
-    assert one.remarks == ()
+@pytest.mark.parametrize("activity", ["walking", "falling", "sitting", "squatting"])
+def test_joints_of_a_maker_who_says_it_are_read(activity: str) -> None:
+    """Kinect's y is up, and that of the Azure Kinect and of MediaPipe down, in its documents."""
+    assert {key: s.up for key, s in JOINT_SETS.items() if s.up} == {
+        **{"kinect1_20": "y", "kinect2_25": "y", "ntu25": "y", "humaneva15": "z", "xsens23": "z"},
+        **{"blazepose33": "-y", "azure32": "-y", "panoptic19": "-y"},
+    }
+    file = make_keypoints("x", KINECT, AXES["y"](NTU), RATE)
+    assert make_clip(file).up == "y"
+    assert make_clip(make_keypoints("x", None, AXES["y"](NTU), RATE), "kinect2_25").up == "y"
+    few = [n for n, name in enumerate(KINECT) if "Hand" not in name]
+    with pytest.raises(MotionFileError, match="does not say which axis"):
+        make_clip(make_keypoints("x", [KINECT[n] for n in few], AXES["y"](NTU)[:, few], RATE))
 
 
-@pytest.mark.parametrize("activity", ["sitting", "stationary"])
-def test_who_stays_has_the_axis_that_is_assumed_said(activity: str) -> None:
-    one = clip_of(AXES["y"](frames(activity, 2.0, RATE)))
-    assert one.up == "y"
-    assert "y is assumed to point up" in one.remarks[0]
+def test_who_stands_along_another_axis_than_the_documented_one_is_asked_for() -> None:
+    """Joints of a Kinect that somebody turned to z up, or somebody who lies before one."""
+    file = make_keypoints("x", KINECT, NTU, RATE)
+    with pytest.raises(
+        MotionFileError, match=r"has y up by its kind, but .* along z in 100%.*\(--up z\).*--up y"
+    ):
+        make_clip(file)
+    assert make_clip(file, up="z").up == "z"
 
 
-# Angles and places that were not looked at when the thresholds of up_axis.py were chosen; what
-# came out of these movements at other angles was.
-OFTEN_LOW = ["lying_down", "getting_up_from_bed", "getting_on_fours", "kneeling", "drinking_seated"]
-OFTEN_LOW += ["waving", "punching", "raising_left_leg", "writing", "clapping"]
-PLACES = {"a room": (1.7, -0.6, 0.0), "a bed": (-0.9, 2.2, 0.55), "a camera": (2.6, 0.3, -1.1)}
+def test_bvh_amc_and_trc_have_y_up(tmp_path: Path) -> None:
+    p = frames("sitting_down", 1.0, RATE)
+    for path in (write_bvh(tmp_path / "x.bvh", p, RATE), write_amc(tmp_path / "x.amc", p)):
+        assert make_clip(read_motion(path).recording("x")).up == "y"
+    (tmp_path / "x.trc").write_text(trc_text(COCO, names("coco17")))
+    assert make_clip(read_motion(tmp_path / "x.trc").recording("x")).up == "y"
 
 
-def turned(p: Float, degrees: float, place: tuple[float, float, float]) -> Float:
-    """Positions turned about the vertical, at a place."""
-    c, s = np.cos(np.radians(degrees)), np.sin(np.radians(degrees))
-    turn = np.array([[c, s, 0], [-s, c, 0], [0, 0, 1]])
-    shifted: Float = (p - [2, 0, 0]) @ turn + np.array(place)
-    return shifted
+def test_a_bvh_with_z_up_is_asked_for(tmp_path: Path) -> None:
+    text = write_bvh(tmp_path / "x.bvh", AXES["y"](frames("walking", 1.0, RATE)), RATE).read_text()
+    (tmp_path / "x.bvh").write_text(text)
+    with pytest.raises(MotionFileError, match=r"has y up by its kind, but .*\(--up -?[xz]\)"):
+        make_clip(read_motion(tmp_path / "x.bvh").recording("x"))
 
 
-def clip_unless_asked(p: Float) -> Clip | None:
-    try:
-        return clip_of(p)
-    except MotionFileError as refused:
-        assert "--up" in str(refused)  # noqa: PT017
-        return None
+def with_screen(data: bytes, screen: bytes) -> bytes:
+    """C3D whose POINT:Y_SCREEN says which axis points up; its name takes the place of a label."""
+    body = struct.pack("<bBB", -1, 1, len(screen)) + screen + b"\0"
+    entry = struct.pack("<bb", 8, 1) + b"Y_SCREEN" + struct.pack("<H", 0) + body
+    at = data.index(b"UNITS")
+    units = data[at - 2 : at + 5] + struct.pack("<H", 9) + data[at + 7 : at + 14]
+    whole = units + entry
+    return data[: at - 2] + whole + data[at - 2 + len(whole) :]
 
 
-@pytest.mark.parametrize("up", AXES)
-@pytest.mark.parametrize("place", PLACES)
-@pytest.mark.parametrize("activity", OFTEN_LOW)
-def test_at_other_angles_and_places_no_vertical_is_wrong(
-    activity: str, place: str, up: str
-) -> None:
-    for degrees in (8, 61, 143, 262, 300):
-        p = turned(frames(activity, 2.0, RATE), degrees, PLACES[place])
-        one = clip_unless_asked(AXES[up](p))
-        assert one is None or one.up == up, (degrees, one.remarks)
+@pytest.mark.parametrize("screen", [b"+Z", b"+Y", b"-Y"])
+def test_a_c3d_has_the_axis_of_its_screen(screen: bytes, tmp_path: Path) -> None:
+    up = screen.decode().lower().lstrip("+")
+    data = with_screen(c3d_bytes(AXES[up](COCO), names("coco17")), screen)
+    path = tmp_path / "x.c3d"
+    path.write_bytes(data)
+    assert make_clip(read_motion(path).recording("x")).up == up
+    path.write_bytes(c3d_bytes(AXES[up](COCO), names("coco17")))
+    with pytest.raises(MotionFileError, match=rf"\(--up {up}\)"):
+        make_clip(read_motion(path).recording("x"))
 
 
-@pytest.mark.parametrize("up", AXES)
-@pytest.mark.parametrize("place", ["a room", "a bed"])
-@pytest.mark.parametrize("activity", ["lying", "turning_over", "crawling", "trying_to_get_up"])
-def test_who_lies_or_crawls_for_two_seconds_is_asked_for(
-    activity: str, place: str, up: str
-) -> None:
-    for degrees in (0, 8, 90, 180, 262):
-        p = turned(frames(activity, 2.0, RATE), degrees, PLACES[place])
-        assert clip_unless_asked(AXES[up](p)) is None, degrees
+C3D_UNITS = {b"m ": 1.0, b"cm": 0.01, b"mm": 0.001, b"in": 0.0254}
 
 
-def test_who_stands_in_front_of_a_camera_is_not_asked_for() -> None:
-    for activity in ("waving", "punching", "clapping", "raising_arms"):
-        for degrees in (0, 90, 180):
-            p = turned(frames(activity, 2.0, RATE), degrees, PLACES["a camera"])
-            one = clip_unless_asked(AXES["-y"](p))
-            assert one is not None
-            assert one.up == "-y"
+@pytest.mark.parametrize("unit", C3D_UNITS)
+@pytest.mark.parametrize("stature", [0.95, 1.75, 2.2])
+def test_a_c3d_has_the_unit_that_it_says(unit: bytes, stature: float, tmp_path: Path) -> None:
+    """POINT:UNITS in cm are cm, not what makes the likeliest person."""
+    p = COCO * stature / 1.75 / C3D_UNITS[unit] / 1000
+    data = c3d_bytes(p, names("coco17")).replace(b"\x01\x02mm", b"\x01\x02" + unit)
+    clip = clip_of(tmp_path / "x.c3d", data)
+    assert clip.unit == C3D_UNITS[unit]
+    assert clip.stature == pytest.approx(stature, rel=0.1)
+    assert read_motion(tmp_path / "x.c3d").recording("x").unit == C3D_UNITS[unit]
 
 
-@dataclass(frozen=True)
-class Posed(Keypoints):
-    """Positions with a rest pose of their own."""
-
-    rest: Float | None = None  # type: ignore[assignment]
-
-
-def rest_along(axis: str) -> Float:
-    """Positions [15, 3] of somebody who stands along an axis."""
-    p, number = frames("stationary", 0.1, RATE)[0], "xyz".index(axis[-1])
-    sign = -1 if axis[0] == "-" else 1
-    rest: Float = np.roll(p * [1, sign, sign], number - 2, axis=1)
-    return rest
+def test_a_c3d_whose_unit_makes_nobody_is_asked_for(tmp_path: Path) -> None:
+    data = c3d_bytes(COCO, names("coco17")).replace(b"\x01\x02mm", b"\x01\x02cm")
+    with pytest.raises(MotionFileError, match=r"of 17\.\d m in 0\.01 m; .*unit_m .*--unit M"):
+        clip_of(tmp_path / "x.c3d", data)
+    assert clip_of(tmp_path / "x.c3d", data, unit=0.001).unit == 0.001
 
 
-@pytest.mark.parametrize("up", AXES)
-@pytest.mark.parametrize("rest", ["x", "-x", "y", "z", "-z"])
-@pytest.mark.parametrize("activity", ["waving", "stationary", "raising_arms"])
-def test_frames_go_before_the_rest_pose(activity: str, rest: str, up: str) -> None:
-    """In public data sets bones are along x in the rest pose; frames turn the root."""
-    p = AXES[up](frames(activity, 2.0, RATE))
-    one = make_clip(Posed("x.bvh", WANTED, p, RATE, rest=rest_along(rest)))
-    assert one.up == up
-    remarks = [remark for remark in one.remarks if f"{up} is assumed to point up" in remark]
-    assert len(remarks) == (rest != up)
-
-
-@pytest.mark.parametrize("rest", ["x", "-x", "y"])
-@pytest.mark.parametrize("activity", ["lying", "turning_over", "crawling", "trying_to_get_up"])
-def test_who_lies_is_not_stood_up_by_a_rest_pose(activity: str, rest: str) -> None:
-    for degrees in (0, 8, 90, 180, 262):
-        p = AXES["y"](turned(frames(activity, 2.0, RATE), degrees, PLACES["a room"]))
-        file = Posed("x.bvh", WANTED, p, RATE, rest=rest_along(rest))
-        try:
-            assert make_clip(file).up == "y"
-        except MotionFileError as refused:
-            assert "--up" in str(refused)  # noqa: PT017
-
-
-def test_another_vertical_than_a_standing_rest_pose_needs_a_floor() -> None:
-    """Who is straight along z of a file whose rest pose stands along y may as well lie."""
-    p = frames("waving", 2.0, RATE)
-    for shift, is_asked in ((0.0, False), (0.9, True)):
-        file = Posed("x.bvh", WANTED, p - [0, 0, shift], RATE, rest=rest_along("y"))
-        try:
-            assert make_clip(file).up == "z"
-        except MotionFileError as refused:
-            assert is_asked
-            assert "upright along z and y in its rest pose" in str(refused)  # noqa: PT017
-        else:
-            assert not is_asked
+@pytest.mark.parametrize("unit", [0.0254, 0.0254 / 0.45])
+def test_units_that_are_no_decade_are_asked_for(unit: float, tmp_path: Path) -> None:
+    data = npz_bytes(names=names("coco17"), positions=COCO / unit, rate=RATE)
+    with pytest.raises(MotionFileError, match=r"in m or of .* in cm or of .* in mm.*--unit M"):
+        clip_of(tmp_path / "x.npz", data)
+    assert clip_of(tmp_path / "x.npz", data, unit=unit).stature == pytest.approx(1.75, rel=0.05)
 
 
 def rest_along_x_bvh() -> str:
@@ -225,7 +177,6 @@ def test_a_bvh_with_bones_along_x_stands_along_y(tmp_path: Path) -> None:
     (tmp_path / "x.bvh").write_text(rest_along_x_bvh())
     one = make_clip(read_motion(tmp_path / "x.bvh").recording("x.bvh"))
     assert one.up == "y"
-    assert "y is assumed to point up" in one.remarks[0]
     p = one.positions
     assert 1.6 < one.stature < 1.85
     assert p[:, WANTED.index("head"), 2].min() > 0.85

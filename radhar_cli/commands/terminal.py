@@ -198,10 +198,9 @@ def print_plan(config: "AnyConfig", jobs: int | None) -> None:
     )
     shares = {} if isinstance(cost, AtLeast) else cost.shares
     _tell_stages({product.name: product.does for product in products}, shares)
-    tell(samples)
     short = f", then {CHECK_SHARE * DRY_RUN_S:g} s were over" if build_plan.cut_short else ""
     checked = f"{build_plan.checked} of {len(rows)} checked"
-    tell(f"scenes      {checked}: {build_plan.redrawn} drawn again{short}")
+    tell(f"{samples}\nscenes      {checked}: {build_plan.redrawn} drawn again{short}")
     _tell_cost(build_plan)
     if acceleration := describe_acceleration(config):
         tell(f"            {acceleration}")

@@ -169,7 +169,7 @@ def test_it_works_in_an_empty_environment(whole: Built, tmp_path: Path) -> None:
     assert "no torch" in run(radhar, "--version", folder=tmp_path)
     (snippet,) = (one.text for one in blocks(ROOT / "README.md") if one.language == "python")
     said = run(programs / "python", "-c", snippet, folder=tmp_path)
-    assert said.startswith("(60, 64, 64)")
+    assert said.startswith("(36, 64, 64)")
     done = subprocess.run(
         [radhar, "train", "set", "-o", "run"], cwd=tmp_path, capture_output=True, text=True
     )

@@ -42,7 +42,7 @@ class BarProgress(Closing):
             name: the stage, shown before the bar.
             total: number of units of the stage.
             done: number of them that are finished already.
-            unit: name of the items, in the singular.
+            unit: what is counted, in the singular.
         """
         self.close()
         unit = unit or self._unit
@@ -106,7 +106,7 @@ def _class_counts(rows: "Rows") -> dict[str, int]:
 
 
 def print_outcome(config: "AnyConfig", outcome: "BuildOutcome") -> None:
-    """Print the size, samples and splits of the data set that a build has written."""
+    """Print what a build has written, and where."""
     from radhar_cli.config.data_set import Config
     from radhar_cli.dataset.layout import DATASET, SPLITS, Rows
     from radhar_cli.dataset.split import split_rows
@@ -139,7 +139,7 @@ def print_outcome(config: "AnyConfig", outcome: "BuildOutcome") -> None:
 
 
 def print_part(outcome: "BuildOutcome", out: Path, part: str) -> None:
-    """Print the content of a part of a data set, and the command that merges it.
+    """Print what a part of a data set holds, and how to merge it.
 
     Args:
         outcome: that of the build of the part.
@@ -171,7 +171,6 @@ def print_plan(config: "AnyConfig", jobs: int | None) -> None:
     )
     from radhar_cli.dataset.layout import Rows
     from radhar_cli.dataset.split import split_rows, split_warnings
-    from radhar_cli.learning.settings import TrainConfig
     from radhar_cli.scene.products.acceleration import describe_acceleration
     from radhar_cli.scene.products.table import plan_images
 
@@ -185,9 +184,7 @@ def print_plan(config: "AnyConfig", jobs: int | None) -> None:
     with BarProgress() as bars:
         build_plan = plan_build(config, jobs, bars, DRY_RUN_S)
     cost, warnings = build_plan.cost, split_warnings(config, split_rows(config))
-    epochs = TrainConfig().epochs
-    warnings += laws_by_class(config)
-    warnings += [warning["message"] for warning in build_plan.warnings]
+    warnings += [*laws_by_class(config), *(one["message"] for one in build_plan.warnings)]
     report(
         stages=[product.name for product in products],
         classes=_class_counts(rows),
@@ -196,19 +193,18 @@ def print_plan(config: "AnyConfig", jobs: int | None) -> None:
         checked=build_plan.checked,
         redrawn=build_plan.redrawn,
         warnings=warnings,
+        training_seconds=training_seconds(config),
         **dict.fromkeys(field.name for field in fields(Estimate)) | vars(cost),
-        training_seconds=training_seconds(config, epochs),
     )
     shares = {} if isinstance(cost, AtLeast) else cost.shares
     _tell_stages({product.name: product.does for product in products}, shares)
-    tell(samples)
     short = f", then {CHECK_SHARE * DRY_RUN_S:g} s were over" if build_plan.cut_short else ""
     checked = f"{build_plan.checked} of {len(rows)} checked"
-    tell(f"scenes      {checked}: {build_plan.redrawn} drawn again{short}")
+    tell(f"{samples}\nscenes      {checked}: {build_plan.redrawn} drawn again{short}")
     _tell_cost(build_plan)
-    _tell_training(config, epochs)
     if acceleration := describe_acceleration(config):
         tell(f"            {acceleration}")
+    _tell_training(config)
     for message in warnings:
         tell(f"warning: {message}")
     tell("nothing was written")
@@ -218,7 +214,7 @@ def _tell_stages(products: Mapping[str, str], shares: Mapping[str, float]) -> No
     """Print the stages of a build, and the share of its processor time that each takes.
 
     Args:
-        products: description of each product of a sample, by name.
+        products: what each product of a sample is, by name.
         shares: share of each stage, %; empty where no sample was timed.
     """
     from radhar_cli.dataset.estimate import STAGES
@@ -258,20 +254,19 @@ def _tell_cost(build_plan: "BuildPlan") -> None:
         )
 
 
-def _tell_training(config: "Config", epochs: int) -> None:
-    """Print what training on the images of a map costs, and what it would of a radar's own size."""
+def _tell_training(config: "Config") -> None:
+    """Print what training on the images of a map costs, and what with a pixel a cell of frames."""
     from radhar_cli.config.first_level import size_of_frames
-    from radhar_cli.dataset.estimate import training_seconds
+    from radhar_cli.dataset.estimate import EPOCHS, training_seconds
     from radhar_cli.schema.number import nominal
 
-    seconds, size = training_seconds(config, epochs), config.image.size_px
-    tell(
-        f"training    some {_time(seconds)} of a core: {epochs} epochs of {size[0]} x {size[1]} px"
-    )
-    own = size_of_frames(config.radar, nominal(config.duration_s))
-    if own is not None and prod(own) < prod(size):
-        smaller = _time(seconds * prod(own) / prod(size))
-        tell(f"            with image.size_px={[*own]}, a pixel a cell of the stft, some {smaller}")
+    seconds, (height, width) = training_seconds(config), config.image.size_px
+    shape = f"{height} x {width} px"
+    tell(f"training    some {_time(seconds)} of a core: {EPOCHS} epochs of a map's images, {shape}")
+    cells = size_of_frames(config.radar, nominal(config.duration_s))
+    if cells is not None and prod(cells) < height * width:
+        smaller = _time(seconds * prod(cells) / (height * width))
+        tell(f"            with image.size_px={[*cells]}, a pixel a cell of stft, some {smaller}")
 
 
 def _time(seconds: float) -> str:

@@ -682,8 +682,8 @@ def size_of_frames(radar: Radar, seconds: float) -> tuple[int, int] | None:
     if not isinstance(radar, ArrayRadar) or not (timing := radar.timing).frames_apart:
         return None
     cells = timing.n_doppler, timing.frames_in(seconds)
-    most = ImageConfig().size_px
-    height, width = (min(max(c, LEAST_PX), m) for c, m in zip(cells, most, strict=True))
+    limits = ImageConfig().size_px
+    height, width = (min(max(c, LEAST_PX), m) for c, m in zip(cells, limits, strict=True))
     return height, width
 
 

@@ -82,14 +82,14 @@ def _describe_frame_maps(
     dataset.attrs["unit"] = "level"
     dataset.attrs["meaning"] = "levels of a frame, as in /maps; row 0 is the lowest"
     names = ("bottom", "top", "row"), ("left", "right", "column")
-    found = _axes_of(file, config, kind.name, subframe)
-    for (first, last, what), of_kind, axis in zip(
-        names, (kind.rows, kind.columns), found or (None, None), strict=True
+    common = _axes_of(file, config, kind.name, subframe)
+    for (first, last, side), quantity, axis in zip(
+        names, (kind.rows, kind.columns), common or (None, None), strict=True
     ):
         low, high = (np.nan, np.nan) if axis is None else axis.edges
-        described = {f"{what}_quantity": of_kind.quantity, f"{what}_unit": of_kind.unit}
-        dataset.attrs.update({**described, f"{what}_{first}": low, f"{what}_{last}": high})
-    if found is None:
+        described = {f"{side}_quantity": quantity.quantity, f"{side}_unit": quantity.unit}
+        dataset.attrs.update({**described, f"{side}_{first}": low, f"{side}_{last}": high})
+    if common is None:
         dataset.attrs["edges"] = DIFFER
     label_axes(dataset, axes)
 

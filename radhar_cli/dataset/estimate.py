@@ -37,6 +37,7 @@ PAYS_S = 0.6  # of work, from which on a worker is worth its start
 FILE_S = 0.0003
 END_S, END_SAMPLE_S, END_BYTE_S = 0.2, 0.0003, 1e-8
 PIXEL_S = 1e-6  # of a pixel of an image that smallnet is trained on, in an epoch
+EPOCHS = 30  # of `radhar train`
 START_END = "start and end"
 # What stages are that are no products.
 STAGES = {
@@ -131,10 +132,10 @@ def jobs_that_pay(config: Config) -> int:
     return max(1, min(cores(), int(len(rows) * seconds / PAYS_S)))
 
 
-def training_seconds(config: Config, epochs: int) -> float:
-    """Processor time of training the usual network on the images of a map, s, on a CPU."""
+def training_seconds(config: Config) -> float:
+    """Time of one core that training on the images of a map takes by default, s."""
     images = int((split_rows(config) == SPLITS.index("train")).sum())
-    return PIXEL_S * images * prod(config.image.size_px) * epochs
+    return PIXEL_S * images * prod(config.image.size_px) * EPOCHS
 
 
 def estimate(

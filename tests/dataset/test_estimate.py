@@ -16,6 +16,7 @@ from radhar_cli.dataset import scene_fields
 from radhar_cli.dataset import trial as trial_module
 from radhar_cli.dataset.build import build
 from radhar_cli.dataset.estimate import (
+    EPOCHS,
     START_END,
     Estimate,
     WrittenSamples,
@@ -30,6 +31,7 @@ from radhar_cli.dataset.layout import Rows
 from radhar_cli.dataset.sample import SampleRow, synthesise
 from radhar_cli.dataset.trial import DRAW, WRITE, Trial, TrialSample, try_samples
 from radhar_cli.dataset.workers import run_within
+from radhar_cli.learning.settings import TrainConfig
 from radhar_cli.processes.progress import NO_PROGRESS
 from radhar_cli.scene.checks.drawing import draw_valid_scene
 from radhar_cli.scene.products.table import plan_images
@@ -152,13 +154,13 @@ def slow_after(number, function):
 def test_training_costs_as_many_pixels_as_it_sees(tmp_path):
     """Of the images of its own part of the data set; what a pixel costs is measured elsewhere."""
     small = load_config(small_config(tmp_path))
-    once = training_seconds(small, 1)
+    once = training_seconds(small)
     assert once > 0
-    assert training_seconds(small, 30) == pytest.approx(30 * once)
+    assert TrainConfig().epochs == EPOCHS
     larger = small.replace({"image.size_px": [96, 48]})
-    assert training_seconds(larger, 1) == pytest.approx(2 * once)
+    assert training_seconds(larger) == pytest.approx(2 * once)
     more = small.replace({"samples_per_class": 300})
-    assert training_seconds(more, 1) == pytest.approx(300 * 0.67 / 2 * once, rel=0.01)
+    assert training_seconds(more) == pytest.approx(300 * 0.67 / 2 * once, rel=0.01)
 
 
 def test_a_dry_run_ends_when_its_time_is_over(tmp_path, monkeypatch):

@@ -190,12 +190,17 @@ def test_tar_files_are_cut_and_have_the_same_bytes_again(place, tmp_path, monkey
     assert f"train-{{000000..{len(names) - 1:06d}}}.tar" in (place / "tars/README.md").read_text()
 
 
-def test_a_data_set_of_another_numbering_is_refused_in_a_line(place, tmp_path):
-    old = tmp_path / "dataset.h5"
-    with edited(place / "set/dataset.h5", old) as file:
-        file.attrs["schema_version"] = 2
-    with pytest.raises(FolderError, match="schema_version = 2: should be 3, in which labels"):
-        open_dataset(old)
+@pytest.mark.parametrize(
+    ("version", "message"),
+    [(2, "2: should be 3, in which labels"), (4, "4: is written by a newer radhar, .* update")],
+)
+def test_a_data_set_of_another_numbering_is_refused_in_a_line(version, message, place, tmp_path):
+    other = tmp_path / "dataset.h5"
+    with edited(place / "set/dataset.h5", other) as file:
+        file.attrs["schema_version"] = version
+    with pytest.raises(FolderError, match=f"schema_version = {message}") as refused:
+        open_dataset(other)
+    assert refused.value.status == 2
 
 
 def test_files_are_cut_and_groups_are_small(place, h5):

@@ -171,7 +171,6 @@ def print_plan(config: "AnyConfig", jobs: int | None) -> None:
     )
     from radhar_cli.dataset.layout import Rows
     from radhar_cli.dataset.split import split_rows, split_warnings
-    from radhar_cli.scene.products.acceleration import describe_acceleration
     from radhar_cli.scene.products.table import plan_images
 
     rows = Rows.of(config)
@@ -202,9 +201,7 @@ def print_plan(config: "AnyConfig", jobs: int | None) -> None:
     checked = f"{build_plan.checked} of {len(rows)} checked"
     tell(f"{samples}\nscenes      {checked}: {build_plan.redrawn} drawn again{short}")
     _tell_cost(build_plan)
-    if acceleration := describe_acceleration(config):
-        tell(f"            {acceleration}")
-    _tell_training(config)
+    _tell_speed(config)
     for message in warnings:
         tell(f"warning: {message}")
     tell("nothing was written")
@@ -254,12 +251,15 @@ def _tell_cost(build_plan: "BuildPlan") -> None:
         )
 
 
-def _tell_training(config: "Config") -> None:
-    """Print what training on the images of a map costs, and what with a pixel a cell of frames."""
+def _tell_speed(config: "Config") -> None:
+    """Print what compiled code does, and what training on a map costs: so, and a pixel a cell."""
     from radhar_cli.config.request import size_of_frames
     from radhar_cli.dataset.estimate import EPOCHS, training_seconds
+    from radhar_cli.scene.products.acceleration import describe_acceleration
     from radhar_cli.schema.number import nominal
 
+    if acceleration := describe_acceleration(config):
+        tell(f"            {acceleration}")
     seconds, (height, width) = training_seconds(config), config.image.size_px
     shape = f"{height} x {width} px"
     tell(f"training    some {_time(seconds)} of a core: {EPOCHS} epochs of a map's images, {shape}")

@@ -161,17 +161,9 @@ def print_plan(config: "AnyConfig", jobs: int | None) -> None:
     """
     from radhar_cli.config.class_laws import laws_by_class
     from radhar_cli.config.data_set import MeasuredConfig
-    from radhar_cli.dataset.estimate import (
-        CHECK_SHARE,
-        DRY_RUN_S,
-        AtLeast,
-        Estimate,
-        plan_build,
-        training_seconds,
-    )
+    from radhar_cli.dataset.estimate import CHECK_SHARE, DRY_RUN_S, AtLeast, Estimate, plan_build
     from radhar_cli.dataset.layout import Rows
     from radhar_cli.dataset.split import split_rows, split_warnings
-    from radhar_cli.scene.products.acceleration import describe_acceleration
     from radhar_cli.scene.products.table import plan_images
 
     rows = Rows.of(config)
@@ -193,7 +185,7 @@ def print_plan(config: "AnyConfig", jobs: int | None) -> None:
         checked=build_plan.checked,
         redrawn=build_plan.redrawn,
         warnings=warnings,
-        training_seconds=training_seconds(config),
+        training_seconds=build_plan.training_seconds,
         **dict.fromkeys(field.name for field in fields(Estimate)) | vars(cost),
     )
     shares = {} if isinstance(cost, AtLeast) else cost.shares
@@ -202,9 +194,7 @@ def print_plan(config: "AnyConfig", jobs: int | None) -> None:
     checked = f"{build_plan.checked} of {len(rows)} checked"
     tell(f"{samples}\nscenes      {checked}: {build_plan.redrawn} drawn again{short}")
     _tell_cost(build_plan)
-    if acceleration := describe_acceleration(config):
-        tell(f"            {acceleration}")
-    _tell_training(config)
+    _tell_speed(config, build_plan.training_seconds)
     for message in warnings:
         tell(f"warning: {message}")
     tell("nothing was written")
@@ -254,13 +244,21 @@ def _tell_cost(build_plan: "BuildPlan") -> None:
         )
 
 
-def _tell_training(config: "Config") -> None:
-    """Print what training on the images of a map costs, and what with a pixel a cell of frames."""
+def _tell_speed(config: "Config", seconds: float) -> None:
+    """Print what compiled code does, and what training costs.
+
+    Args:
+        config: that of the data set.
+        seconds: time of a core that training on a map takes, s.
+    """
     from radhar_cli.config.first_level import size_of_frames
-    from radhar_cli.dataset.estimate import EPOCHS, training_seconds
+    from radhar_cli.dataset.estimate import EPOCHS
+    from radhar_cli.scene.products.acceleration import describe_acceleration
     from radhar_cli.schema.number import nominal
 
-    seconds, (height, width) = training_seconds(config), config.image.size_px
+    if acceleration := describe_acceleration(config):
+        tell(f"            {acceleration}")
+    height, width = config.image.size_px
     shape = f"{height} x {width} px"
     tell(f"training    some {_time(seconds)} of a core: {EPOCHS} epochs of a map's images, {shape}")
     cells = size_of_frames(config.radar, nominal(config.duration_s))

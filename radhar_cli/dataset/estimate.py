@@ -86,6 +86,7 @@ class BuildPlan:
     cost: Estimate | AtLeast
     waited: float  # for a sample, s
     cut_short: bool  # fewer scenes were checked than usual
+    training_seconds: float  # of one core, for the default network on the images of a map
 
 
 def plan_build(config: Config, jobs: int | None, progress: Progress, seconds: float) -> BuildPlan:
@@ -114,6 +115,7 @@ def plan_build(config: Config, jobs: int | None, progress: Progress, seconds: fl
         cost,
         seconds_for_samples,
         len(scenes) < usual_scenes,
+        training_seconds(config),
     )
 
 

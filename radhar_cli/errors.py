@@ -1,11 +1,8 @@
 """Errors that a user can mend; the program prints their text alone and exits with their status."""
 
 import difflib
-import shlex
 import sys
 from collections.abc import Iterable
-from importlib.util import find_spec
-from pathlib import Path
 
 INTERRUPTED, TERMINATED = 130, 143  # exit status after Ctrl-C and SIGTERM, as shells count them
 
@@ -37,6 +34,10 @@ def how_to_install(*modules: str) -> str:
     It names packages, not extras of radhar, which no package index has, and the Python that runs:
     `pip` alone may be another one's.
     """
+    import shlex
+    from importlib.util import find_spec
+    from pathlib import Path
+
     python = Path(sys.executable)
     if python.is_relative_to(Path.cwd()):
         python = python.relative_to(Path.cwd())

@@ -1,12 +1,12 @@
 """Words of errors that several commands share."""
 
+import importlib.util
 import re
 import sys
 from pathlib import Path
 
 import pytest
 
-from radhar_cli import errors
 from radhar_cli.errors import describe_schema, how_to_install
 
 ROOT = Path(__file__).parents[1]
@@ -48,7 +48,7 @@ def test_packages_go_to_the_python_that_runs_wherever_the_user_stands(
 
 
 def test_an_environment_without_pip_is_filled_by_uv(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(errors, "find_spec", lambda name: None)
+    monkeypatch.setattr(importlib.util, "find_spec", lambda name: None)
     assert how_to_install("sklearn").startswith("uv pip install --python ")
     assert how_to_install("sklearn").endswith("python scikit-learn")
 

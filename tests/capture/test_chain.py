@@ -47,6 +47,7 @@ def apart(one: PowerMap, other: PowerMap, depth: float = 40.0) -> float:
     return float(np.abs(decibels(one.power, depth) - decibels(other.power, depth)).mean())
 
 
+@pytest.mark.every(3)
 @pytest.mark.parametrize(
     "overrides",
     [
@@ -91,6 +92,7 @@ IQ = [IMPULSE[0].replace("impulse,", "impulse, output: iq,").replace("600", "60"
 LAYERS = "wall={size_m: [null, 5, 2.5], echoes: exact, layers: [{eps_r: 4, thickness_m: 0.1}]}"
 
 
+@pytest.mark.every(4)
 @pytest.mark.parametrize(
     ("holds", "overrides"),
     [

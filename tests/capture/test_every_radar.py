@@ -89,6 +89,7 @@ engine: {{kind: {engine}}}
 """
 
 
+@pytest.mark.every(4)
 @pytest.mark.parametrize("radar", RADARS)
 def test_a_raw_recording_gives_the_maps_of_its_scene(tmp_path: Path, radar: str) -> None:
     section, maps = RADARS[radar]
@@ -130,6 +131,7 @@ def write_as(form: str, path: Path, samples: np.ndarray) -> Path:
     return file
 
 
+@pytest.mark.every(3)
 @pytest.mark.parametrize("radar", FORMS)
 def test_samples_in_another_form_give_the_same_maps(tmp_path: Path, radar: str) -> None:
     section, names = RADARS[radar]

@@ -84,6 +84,7 @@ def same(radar, other):
     return differing_key(*documents)
 
 
+@pytest.mark.every(5)
 @pytest.mark.parametrize("name", RADARS)
 def test_the_radar_comes_back(tmp_path, name):
     path, recording = recorded(tmp_path, name)
@@ -106,6 +107,7 @@ WITH_SNR = ("fmcw", "frames", "array_iq", "array_real", "turns", "beam", "narrow
             "board_iq2", "saw")  # fmt: skip
 
 
+@pytest.mark.every(4)
 @pytest.mark.parametrize("name", WITH_SNR)
 @pytest.mark.parametrize(("snr_db", "seed"), [(20, 6), *slow([(0, 4)])])
 def test_the_snr_comes_back_as_received(tmp_path, name, snr_db, seed):
@@ -133,6 +135,7 @@ WALKS = {
 }
 
 
+@pytest.mark.every(3)
 @pytest.mark.parametrize("name", WALKS)
 def test_a_walk_counts_as_a_whole(tmp_path, name):
     """Most of its power is in its last second, when the walker is near (A^2 goes with R^-4)."""
@@ -187,6 +190,7 @@ def test_a_fitted_config_makes_recordings_of_its_snr(tmp_path):
     assert again == pytest.approx(found, abs=2)
 
 
+@pytest.mark.every(4)
 @pytest.mark.parametrize(
     "name", ["fmcw", "array_real", "sfcw", "sfcw_array", "cw_iq", "cw_array", "impulse_iq"]
 )
@@ -214,6 +218,7 @@ def axes_in(file):
     return values
 
 
+@pytest.mark.every(3)
 @pytest.mark.parametrize("name", ["array_iq", "array_real", "frames"])
 def test_maps_of_the_fitted_config_have_the_axes_of_the_recording(tmp_path, name):
     _, recording = recorded(tmp_path, name)

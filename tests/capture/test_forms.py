@@ -165,6 +165,7 @@ def taken(tmp_path, names, *overrides):
         return info, recording.beat(0, info.pulses)
 
 
+@pytest.mark.every(4)
 @pytest.mark.parametrize("name", FILES)
 def test_slow_time_is_the_same_in_every_form(tmp_path, name):
     write, keys = FILES[name]

@@ -57,6 +57,7 @@ LOSSES = {
 }
 
 
+@pytest.mark.every(4)
 @pytest.mark.parametrize("packets", LOSSES.values(), ids=LOSSES)
 @pytest.mark.parametrize(
     ("lanes", "order", "real"), [(2, 1, False), (4, 0, False), (2, 1, True), (2, 0, False)]
@@ -153,6 +154,7 @@ SURE = {
 }
 
 
+@pytest.mark.every(4)
 @pytest.mark.parametrize("spread", [1.0, 0.05, 0.0], ids=["unlike", "similar", "same"])
 @pytest.mark.parametrize("packets", SURE.values(), ids=SURE)
 def test_no_pulse_is_wrong_without_a_flag(

@@ -114,6 +114,7 @@ def test_a_name_whose_value_depends_on_the_way_through_the_script_has_none(tmp_p
         header_of(tmp_path, script)
 
 
+@pytest.mark.every(3)
 @pytest.mark.parametrize(
     "text",
     [

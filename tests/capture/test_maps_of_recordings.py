@@ -80,6 +80,7 @@ def apart(folder: Path, config: Config, scene: Simulation) -> float:
     return max(norms)
 
 
+@pytest.mark.every(4)
 @pytest.mark.parametrize("canceller", CANCELLERS)
 @pytest.mark.parametrize("radar", RADARS)
 def test_maps_are_those_of_the_recording(tmp_path: Path, radar: str, canceller: str) -> None:
@@ -89,6 +90,7 @@ def test_maps_are_those_of_the_recording(tmp_path: Path, radar: str, canceller: 
     assert apart(tmp_path, config, simulate(config, seed=3, raw=True)) < 1e-5
 
 
+@pytest.mark.every(4)
 @pytest.mark.parametrize("around", ["wall", "layers", "room"])
 @pytest.mark.parametrize("radar", ["fmcw", "sfcw", "cw", "impulse", "impulse-iq", "board"])
 def test_walls_and_faces_are_in_maps_where_nothing_takes_them_out(

@@ -250,6 +250,7 @@ def settings(texts: list[str]) -> list[str]:
     return [word for text in texts for word in ("--set", text)]
 
 
+@pytest.mark.every(4)
 @pytest.mark.parametrize("texts", FITTING + WITHOUT_EFFECT, ids=" ".join)
 def test_settings_are_checked_against_the_radar_of_the_recordings(
     recordings: Path, tmp_path: Path, texts: list[str]

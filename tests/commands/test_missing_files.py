@@ -44,6 +44,7 @@ def refusal(words):
     return str(error.value)
 
 
+@pytest.mark.every(4)
 @pytest.mark.parametrize("words", [*CAPTURES, *HEADERS, *OTHERS], ids=lambda words: " ".join(words))
 def test_a_missing_file_is_missing(words, place):
     assert "no such f" in refusal(words)

@@ -53,6 +53,7 @@ def test_a_motion_is_exported_and_read_back(tmp_path):
     assert found < 1e-3
 
 
+@pytest.mark.every(3)
 @pytest.mark.parametrize(
     "activity",
     slow_but([one.slug for one in ACTIVITIES], ("stationary", "walking", "walking_to_falling")),

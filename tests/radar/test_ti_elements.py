@@ -47,6 +47,7 @@ def said_of_elements(cfg: str, device: str) -> list[str] | None:
     return [line for line in config_warnings(config) if any(word in line for word in words)]
 
 
+@pytest.mark.every(8)
 @pytest.mark.parametrize("device", DEVICES)
 @pytest.mark.parametrize("name", FITTING)
 def test_a_file_of_other_elements_is_said_on_a_device(name: str, device: str) -> None:

@@ -52,6 +52,7 @@ def assert_limbs(motion: HumanMotion) -> None:
     assert p[2].min() > 0
 
 
+@pytest.mark.every(4)
 @pytest.mark.parametrize("slug", GAITS)
 @pytest.mark.parametrize("stature", [1.0, 1.25, 2.1])
 def test_draws_are_bodies(slug: str, stature: float) -> None:
@@ -60,6 +61,7 @@ def test_draws_are_bodies(slug: str, stature: float) -> None:
         assert_limbs(moving(draw_scene(config, activity_named(slug), index)))
 
 
+@pytest.mark.every(4)
 @pytest.mark.parametrize("key", KEYS)
 def test_the_ends_of_every_range(key: str) -> None:
     for slug in (slug for slug in GAITS if key in numbers_of(slug)):
@@ -144,6 +146,7 @@ def test_slow_gaits_are_slower_than_walks(slug: str) -> None:
 WALKS = ("walking", "limping", "walking_with_stick", "walking_with_walker", "carrying")
 
 
+@pytest.mark.every(4)
 @pytest.mark.parametrize("slug", WALKS)
 @pytest.mark.parametrize("stature", [1.0, 1.4, 1.75, 2.1])
 def test_knees_of_walkers_bend_as_those_of_people(slug: str, stature: float) -> None:

@@ -78,6 +78,7 @@ def test_at_every_onset_people_are_bodies(
     assert_a_body(motion(scene), np.linspace(-0.25, seconds + 0.25, 120))
 
 
+@pytest.mark.every(4)
 @pytest.mark.parametrize("slug", SLUGS)
 def test_velocities_are_continuous_at_every_onset(slug: str) -> None:
     """A step of time half as long changes a velocity half as much: nothing jumps."""
@@ -88,6 +89,7 @@ def test_velocities_are_continuous_at_every_onset(slug: str) -> None:
         assert np.abs(np.diff(speeds, axis=-1)).max() < 0.6
 
 
+@pytest.mark.every(4)
 @pytest.mark.parametrize(
     ("slug", "name", "usual"),
     [

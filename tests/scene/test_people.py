@@ -81,6 +81,7 @@ def assert_a_body(motion: HumanMotion, t: np.ndarray) -> None:
     assert p[2].min() > 0
 
 
+@pytest.mark.every(4)
 @pytest.mark.parametrize("slug", TWELVE)
 @pytest.mark.parametrize("path", [FREE_SPACE, WALL], ids=lambda path: path.stem)
 def test_draws_of_the_configs_are_bodies(slug: str, path: Path) -> None:
@@ -134,6 +135,7 @@ def test_bodies_up_to_the_limits_of_every_number(block: int) -> None:
             assert_a_body(moving(draw_scene(config, activity, 0)), t)
 
 
+@pytest.mark.every(4)
 @pytest.mark.parametrize("slug", TWELVE)
 def test_velocities_of_people_are_continuous(slug: str) -> None:
     """The change of velocity from sample to sample falls with the sample interval."""
@@ -401,6 +403,7 @@ def test_directions_of_falls_are_drawn() -> None:
     assert falls.count("sideways") == 90 - falls.count("forward")
 
 
+@pytest.mark.every(3)
 @pytest.mark.parametrize("nominal", [True, False])
 @pytest.mark.parametrize("slug", ["stationary", "walking_to_falling", "coming_home"])
 def test_a_written_scene_gives_the_same_recording(slug: str, nominal: bool, tmp_path: Path) -> None:

@@ -46,6 +46,7 @@ def manifest(made: Path, name: str) -> list[dict[str, str]]:
         return [*csv.DictReader(file)]
 
 
+@pytest.mark.every(3)
 @pytest.mark.parametrize("name", WRITERS)
 def test_other_commands_take_what_was_prepared(made: Path, name: str) -> None:
     ok("verify", made / f"{name}_set")

@@ -67,6 +67,7 @@ FILES: dict[str, tuple[str, Callable[[Float, list[str]], bytes]]] = {
 }
 
 
+@pytest.mark.every(4)
 @pytest.mark.parametrize("file", FILES)
 @pytest.mark.parametrize("picture", PICTURES)
 @pytest.mark.parametrize("key", SETS)
@@ -149,6 +150,7 @@ def test_values_tell_world_landmarks_of_any_key(key: str, form: str, tmp_path: P
     assert np.abs(clip.positions - true.positions).max() < 1e-9
 
 
+@pytest.mark.every(4)
 @pytest.mark.parametrize("shift", [(0.0, 0.0), (0.1, 0.35), (-0.5, 0.0), (0.42, 0.0)])
 @pytest.mark.parametrize("form", landmark_files("landmarks", WORLD))
 @pytest.mark.parametrize("key", KEYS[:3])

@@ -30,6 +30,7 @@ PIXELS = (500 + 300 * camera(COCO)[..., :2]).round(1)
 OPENPOSE = joint_set_errors.poses_of(JOINT_SETS["openpose25"], WALKER)
 
 
+@pytest.mark.every(4)
 @pytest.mark.parametrize("form", JSON_FORMS)
 @pytest.mark.parametrize("key", SETS)
 def test_the_walker_comes_back_from_every_json(form: str, key: str, tmp_path: Path) -> None:

@@ -173,6 +173,7 @@ def test_no_usable_seconds_end_before_they_begin() -> None:
         require_complete(clip, a, b)
 
 
+@pytest.mark.every(6)
 @pytest.mark.parametrize("movement", MOVEMENTS)
 @pytest.mark.parametrize("every", [2, 4, 8])
 def test_no_movement_is_taken_for_a_jump(movement: str, every: int) -> None:

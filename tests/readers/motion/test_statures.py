@@ -60,6 +60,7 @@ FORMS = {
 }
 
 
+@pytest.mark.every(4)
 @pytest.mark.parametrize("stature", STATURES)
 @pytest.mark.parametrize("form", FORMS)
 def test_joints_are_as_high_as_they_were(form: str, stature: float, tmp_path: Path) -> None:

@@ -20,6 +20,7 @@ from radhar_cli.readers.motion.text_tables import read_table
 SETS = ("coco17", "openpose25", "h36m17", "kinect2_25", "smpl24", "blazepose33", "azure32")
 
 
+@pytest.mark.every(4)
 @pytest.mark.parametrize("form", TABLES)
 @pytest.mark.parametrize("key", SETS)
 def test_the_walker_comes_back_from_every_table(form: str, key: str, tmp_path: Path) -> None:

@@ -145,6 +145,7 @@ def test_sections_of_their_own_are_keys_of_a_config():
     assert set(OWN_SECTIONS) <= Config.model_fields.keys()
 
 
+@pytest.mark.every(3)
 @pytest.mark.parametrize("kind", [name for name in KINDS if name not in ("fine", "board")])
 def test_two_radars_at_one_place_see_the_same_but_for_their_noise(tmp_path, kind):
     silent = "snr_db: null\nreceiver: {noise_figure_db: null}\n"

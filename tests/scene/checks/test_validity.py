@@ -550,6 +550,7 @@ def test_a_torso_that_leaves_a_fixed_gate_is_warned_of(gate_m, leaves):
     )
 
 
+@pytest.mark.every(2)
 @pytest.mark.parametrize("scatterers", ["points", "segments"])
 def test_the_echo_needs_no_other_instants_than_the_check(monkeypatch, scatterers) -> None:
     """But for the pulses at which it measures its error, and those that count a segment's points:

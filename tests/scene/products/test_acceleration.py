@@ -35,6 +35,7 @@ def test_what_is_missing_is_said_with_what_it_saves(path, monkeypatch):
     assert saved in said
 
 
+@pytest.mark.every(4)
 @pytest.mark.parametrize("path", [*CASES, *NOT])
 def test_numba_is_named_where_it_compiles(path, monkeypatch):
     config = load_config(path, CASES[path][1] if path in CASES else NOT[path])

@@ -380,6 +380,7 @@ def test_a_person_who_does_not_move_at_all_is_black_and_said_to_be(
         assert not len(made(path, "points", overrides=(*options, f"cloud.chain={chain}"))["points"])
 
 
+@pytest.mark.every(4)
 @pytest.mark.parametrize("distance", [2.0, 3.0, 5.0])
 @pytest.mark.parametrize("body", ["points", "segments", "surfaces"])
 @pytest.mark.parametrize("device", ["IWR6843ISK", "IWR6843AOP", "IWR1443BOOST"])

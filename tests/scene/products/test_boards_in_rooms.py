@@ -90,6 +90,7 @@ def test_the_stated_error_is_a_bound_over_all_channels(
     assert mean_power(made["channels"], made["board"]) == pytest.approx(exact_power, rel=1e-6)
 
 
+@pytest.mark.every(3)
 @pytest.mark.parametrize(("body", "board", "more"), CASES)
 def test_what_channels_share_is_what_each_has_alone(
     body: str, board: str, more: dict[str, Any]

@@ -41,6 +41,7 @@ def made(chosen: Config, *names: str, activity: str = "walking") -> Results:
     return record(draw_scene(chosen, activity_named(activity), 0), names)
 
 
+@pytest.mark.every(4)
 @pytest.mark.parametrize("range_sum", ["coherent", "gated"])
 @pytest.mark.parametrize("length", [None, 256])
 @pytest.mark.parametrize("name", NAMES)
@@ -66,6 +67,7 @@ def test_the_kernel_of_a_window_is_the_sum_over_the_samples(name):
         assert found == pytest.approx(kernel(u, k, 102, 128), abs=1e-9)
 
 
+@pytest.mark.every(3)
 @pytest.mark.parametrize("fft_length", [None, 160])
 @pytest.mark.parametrize("bins", [None, slice(5, 12)])
 @pytest.mark.parametrize("name", ["rectangular", "hann", "taylor"])

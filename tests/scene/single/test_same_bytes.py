@@ -22,6 +22,7 @@ SCENES = {
 }
 
 
+@pytest.mark.every(3)
 @pytest.mark.parametrize("name", slow_but(SCENES, ("fmcw", "board", "people")))
 def test_two_runs_leave_the_same_bytes(
     name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch

@@ -2,14 +2,18 @@
 
 from dataclasses import asdict
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from radhar_cli.commands.learning_options import Classes
 from radhar_cli.commands.options import Overrides, StartOver, resumable
 from radhar_cli.commands.tell import report, tell
+from radhar_cli.errors import ConfigError
 from radhar_cli.processes import interrupts
+
+if TYPE_CHECKING:
+    from radhar_cli.learning.tasks.predictions import EvalOptions
 
 
 def train(
@@ -54,6 +58,17 @@ def train(
         bool, typer.Option("--tensorboard", help="Also log the training curves for TensorBoard.")
     ] = False,
     classes: Classes = None,
+    shots: Annotated[
+        str | None,
+        typer.Option(
+            metavar="K,...",
+            help="With --init: accuracy after learning from K labelled images of each class of the "
+            "first DATA, beside a network from scratch; others are shown beside them.",
+        ),
+    ] = None,
+    repeats: Annotated[
+        int, typer.Option(min=1, help="With --shots: number of draws of each K.")
+    ] = 5,
     overwrite: StartOver = False,
 ) -> None:
     """Train a network on a data set.
@@ -68,6 +83,8 @@ def train(
 
       radhar train measured -o runs/tuned --init runs/simulated --resize --set learning_rate=1e-4
 
+      radhar train measured -o out/shots --init runs/simulated --shots 0,1,5,20
+
     An interrupted run is resumed after its last finished epoch by the same command. With
     --tensorboard, `tensorboard --logdir runs` shows the curves of all runs.
     """
@@ -81,7 +98,14 @@ def train(
     from radhar_cli.learning import run_files, training
     from radhar_cli.learning.images.classes import read_classes
     from radhar_cli.learning.settings import TrainConfig
+    from radhar_cli.learning.tasks.predictions import EvalOptions
 
+    if shots is not None:
+        said = {"--config": config, "--model": model, "--target": target, "--overwrite": overwrite}
+        _refuse_with_shots(init, {**said, "--tensorboard": tensorboard})
+        reading = EvalOptions("all", map=map_, resize=resize, names=read_classes(classes))
+        _train_few_shots(data, init, out, _parse_shots(shots), repeats, set_ or [], reading)
+        return
     named = {"map": map_, "model": model, "target": target}
     overrides = [Override(key, value, f"--{key}") for key, value in named.items() if value]
     settings = load_section(TrainConfig, config, [*(set_ or []), *overrides])
@@ -112,3 +136,51 @@ def train(
     )
     for name in (run_files.BEST, run_files.CURVES, run_files.METRICS):
         tell(f"  {out / name}")
+
+
+def _refuse_with_shots(init: Path | None, options: dict[str, object]) -> None:
+    """Refuse options that say nothing with --shots, which goes by the run of --init.
+
+    Raises:
+        ConfigError: names the option.
+    """
+    if init is None:
+        raise ConfigError("--shots: needs --init, a run that goes on learning")
+    for option, value in options.items():
+        if value:
+            raise ConfigError(f"{option}: has no effect with --shots; should be left out")
+
+
+def _parse_shots(text: str) -> list[int]:
+    """Numbers of labelled images, in order, of a text such as 0,5,20.
+
+    Raises:
+        ConfigError: it is none.
+    """
+    words = text.split(",")
+    if not all(word.strip().isdecimal() and len(word) < 7 for word in words):
+        raise ConfigError(f"--shots {text}: should be numbers such as 0,1,5,20")
+    return sorted({int(word) for word in words})
+
+
+def _train_few_shots(
+    data: list[Path],
+    init: Path,
+    out: Path,
+    shots: list[int],
+    repeats: int,
+    settings: list[str],
+    reading: "EvalOptions",
+) -> None:
+    """Print and write the table of few shots."""
+    from radhar_cli.commands.terminal import TrainingView
+    from radhar_cli.learning.few_shots import TABLE, ShotOptions, measure_few_shots
+
+    options = ShotOptions(shots, repeats, data[1:], 0, settings, reading)
+    with resumable(f"what is trained in {out}"), TrainingView() as view:
+        results = measure_few_shots(init, data[0], out, options, view)
+        interrupts.complete(str(out))
+    report(folder=out, table=[asdict(result) for result in results])
+    for result in results:
+        tell(str(result))
+    tell(f"  {out / TABLE}")

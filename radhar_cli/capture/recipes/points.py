@@ -47,6 +47,7 @@ NAMES: dict[str, tuple[str, ...]] = {
     "label": LABELS,
     "person": PERSONS,
 }
+FILES = r"[^/]+\.(csv|tsv|txt|npz|json|dat|bin)"
 NEEDED = ("frame", "x", "y", "z", "doppler")
 
 
@@ -74,20 +75,21 @@ def list_takes(folder: Path, settings: PointTableSettings) -> Iterator[Take]:
     for name in settings.columns:
         if name not in NAMES:
             raise CaptureError(f"columns.{name}: there are {', '.join(NAMES)}")
-    for file in find_files(folder, r"[^/]+\.(csv|tsv|txt|npz|json|dat|bin)"):
-        name = as_name(file.inner)
-        *folders, _ = file.inner.split("/")
+    listed = [(file.path, file.inner) for file in find_files(folder, FILES)]
+    for path, inner in [(folder, folder.name)] if folder.is_file() else listed:
+        name = as_name(inner)
+        *folders, _ = inner.split("/")
         split = next((SPLIT_WORDS[f.lower()] for f in folders if f.lower() in SPLIT_WORDS), None)
         classes = [name for name in folders if name.lower() not in SPLIT_WORDS]
         label = settings.label or (classes[-1] if classes else None)
-        if is_point_capture(file.path):
-            write = partial(_import, file.path, label, settings)
+        if is_point_capture(path):
+            write = partial(_import, path, label, settings)
         else:
             settings.require(str(folder))
             if settings.frame_s is None:
                 raise CaptureError(f"{folder}: frame_s is missing (--set frame_s=0.1)")
-            write = partial(write_take, file.path, label, settings)
-        yield Take(name, (file.path,), write, split)
+            write = partial(write_take, path, label, settings)
+        yield Take(name, (path,), write, split)
 
 
 def _import(path: Path, label: str | None, settings: PointTableSettings, out: Path) -> None:

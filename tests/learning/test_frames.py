@@ -94,7 +94,7 @@ def test_columns_are_learned_and_reported(folder: Path, tmp_path: Path) -> None:
     found = tmp_path / "found.json"
     run("predict", tmp_path / "run", folder, "-o", found, "--overlay", tmp_path / "found.png")
     first = json.loads(found.read_text())[0]
-    assert {len(first["class"]), *map(len, first["probabilities"].values())} == {32}
+    assert {len(first["class"]), *map(len, first["probabilities"].values())} == {60}
     assert set(first["class"]) <= {*first["probabilities"]}
     lines = run("predict", tmp_path / "run", folder).splitlines()
     assert lines[0].startswith(f"{first['sample']}: {first['class'][0]} from 0")

@@ -94,7 +94,7 @@ class Estimates:
         for values, first in zip(self.values, self.first_frame.tolist(), strict=True):
             yield self.task.describe_values(values, self.names, first, top)
 
-    def write(self, path: Path) -> None:
+    def write(self, path: str | Path) -> None:
         """Write what is found as NumPy arrays, as CSV, or as JSON, a document a sample.
 
         CSV has a row for each sample; of frames for each column, of joints for each joint of
@@ -107,6 +107,7 @@ class Estimates:
             ConfigError: it ends in something else.
             FolderError: the file cannot be written.
         """
+        path = Path(path)
         check_file_name(path)
         if path.suffix == ".csv":
             columns = ("class",) * self._are_probabilities + (self.task.coordinates or self.names)

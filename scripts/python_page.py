@@ -36,6 +36,8 @@ The network that this trained, called on an array as the data set has it (grey l
 about a data set, whose answers go to a file:
 
 ```python
+import radhar
+
 run = radhar.load_run("sweep/run", device="cpu")
 print(run.target, run.classes, run.input_shape, run.units)
 with radhar.open_dataset("sweep/10dB") as data:

@@ -59,7 +59,7 @@ SECTIONS = {
     "What they return": (
         "radhar_cli.learning.trained_run.TrainedRun",
         "radhar_cli.learning.interface.EvaluatedRuns",
-        "radhar_cli.learning.estimates.Estimates",
+        "radhar_cli.learning.estimates.RunEstimates",
         "radhar_cli.scene.single.simulate.Simulation",
         "radhar_cli.processing.power_map.PowerMap",
         "radhar_cli.dataset.reading.Dataset",

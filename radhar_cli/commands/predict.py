@@ -71,7 +71,7 @@ def predict(
 
     needs_torch()
     from radhar_cli.files.replacing import write_output
-    from radhar_cli.learning.estimates import Estimates, check_file_name, joined_estimates
+    from radhar_cli.learning.estimates import RunEstimates, check_file_name, joined_estimates
     from radhar_cli.learning.evaluation import open_unlabelled
     from radhar_cli.learning.images.image_set import check_split_name
     from radhar_cli.learning.overlay import draw_overlay
@@ -82,14 +82,14 @@ def predict(
         check_file_name(out)
     if overlay is not None and overlay.suffix != ".png":
         raise ConfigError(f"--overlay {overlay}: should end in .png")
-    network, found = load_run(run, device), list[Estimates]()
+    network, parts = load_run(run, device), list[RunEstimates]()
     for path in paths:
         inputs = open_unlabelled(network.metadata, path, map_, split_part, resize, set_ or ())
         for note in inputs.notes:
             tell(note, err=True)
-        first = len(found)
+        first = len(parts)
         for estimates in network.estimate(inputs):
-            found.append(estimates)
+            parts.append(estimates)
             if out is None:
                 facts = zip(
                     estimates.samples, estimates.documents(), estimates.lines(top), strict=True
@@ -98,11 +98,11 @@ def predict(
                     report(image=name, **document)
                     tell(f"{name}: {line}")
         if overlay is not None and path == paths[0]:
-            drawn = draw_overlay(network.metadata, inputs, joined_estimates(found[first:]), path)
+            drawn = draw_overlay(network.metadata, inputs, joined_estimates(parts[first:]), path)
             write_output(overlay, drawn)
             tell(str(overlay), err=True)
     if out is not None:
-        together = joined_estimates(found)
+        together = joined_estimates(parts)
         together.write(out)
         kind = network.metadata.task.names_key
         report(file=out, samples=len(together), **{kind: list(together.names)})

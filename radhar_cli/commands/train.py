@@ -13,6 +13,7 @@ from radhar_cli.errors import ConfigError
 from radhar_cli.processes import interrupts
 
 if TYPE_CHECKING:
+    from radhar_cli.learning import training
     from radhar_cli.learning.tasks.predictions import EvalOptions
 
 
@@ -95,16 +96,16 @@ def train(
         needs("tensorboard")
     from radhar_cli.commands.terminal import TrainingView
     from radhar_cli.config.reading import Override, load_section
-    from radhar_cli.learning import run_files, training
+    from radhar_cli.learning import training
     from radhar_cli.learning.images.classes import read_classes
     from radhar_cli.learning.settings import TrainConfig
     from radhar_cli.learning.tasks.predictions import EvalOptions
 
     if shots is not None:
         said = {"--config": config, "--model": model, "--target": target, "--overwrite": overwrite}
-        _refuse_with_shots(init, {**said, "--tensorboard": tensorboard})
+        start = _start_of_shots(init, {**said, "--tensorboard": tensorboard})
         reading = EvalOptions("all", map=map_, resize=resize, names=read_classes(classes))
-        _train_few_shots(data, init, out, _parse_shots(shots), repeats, set_ or [], reading)
+        _train_few_shots(data, start, out, _parse_shots(shots), repeats, set_ or [], reading)
         return
     named = {"map": map_, "model": model, "target": target}
     overrides = [Override(key, value, f"--{key}") for key, value in named.items() if value]
@@ -120,26 +121,33 @@ def train(
     with resumable(f"the last finished epoch in {out}"), TrainingView() as view:
         outcome = training.train(settings, data, out, view, options)
         interrupts.complete(str(out))
+    _print_outcome(outcome)
+
+
+def _print_outcome(outcome: "training.Outcome") -> None:
+    """Print and report what a training has led to."""
+    from radhar_cli.learning import run_files
+
     best = outcome.best
     report(
-        folder=out,
+        folder=outcome.folder,
         epochs=len(outcome.history),
         resumed=outcome.resumed,
         best=asdict(best),
-        weights=out / run_files.BEST,
+        weights=outcome.folder / run_files.BEST,
     )
     if outcome.resumed == len(outcome.history):
-        tell(f"{out} is complete: {outcome.resumed} epochs; nothing to do")
+        tell(f"{outcome.folder} is complete: {outcome.resumed} epochs; nothing to do")
     tell(
         f"best epoch {best.epoch}: validation {outcome.score} {100 * best.val_accuracy:.2f} % "
         f"{outcome.interval}, by which it was chosen: `radhar eval` tells of a test part"
     )
     for name in (run_files.BEST, run_files.CURVES, run_files.METRICS):
-        tell(f"  {out / name}")
+        tell(f"  {outcome.folder / name}")
 
 
-def _refuse_with_shots(init: Path | None, options: dict[str, object]) -> None:
-    """Refuse options that say nothing with --shots, which goes by the run of --init.
+def _start_of_shots(init: Path | None, options: dict[str, object]) -> Path:
+    """Run that learns from a few labels; options that say nothing then are refused.
 
     Raises:
         ConfigError: names the option.
@@ -149,6 +157,7 @@ def _refuse_with_shots(init: Path | None, options: dict[str, object]) -> None:
     for option, value in options.items():
         if value:
             raise ConfigError(f"{option}: has no effect with --shots; should be left out")
+    return init
 
 
 def _parse_shots(text: str) -> list[int]:

@@ -19,7 +19,7 @@ SUFFIXES = (".npz", ".csv", ".json")
 
 
 @dataclass(frozen=True)
-class Estimates:
+class RunEstimates:
     """Predictions of a network for N images or sequences.
 
     Attributes:
@@ -149,10 +149,10 @@ class Estimates:
                 yield (sample, *index, *cells)
 
 
-def joined_estimates(parts: Sequence[Estimates]) -> Estimates:
-    """Estimates of one network, one after the other."""
+def joined_estimates(parts: Sequence[RunEstimates]) -> RunEstimates:
+    """RunEstimates of one network, one after the other."""
     first = parts[0]
-    return Estimates(
+    return RunEstimates(
         tuple(sample for part in parts for sample in part.samples),
         first.names,
         np.concatenate([part.values for part in parts]),

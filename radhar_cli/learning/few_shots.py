@@ -47,7 +47,7 @@ BATCH = 128
 TABLE = "shots.csv"
 
 
-class Draw(NamedTuple):
+class ShotDraw(NamedTuple):
     """Rows to learn from, up to k of each class, and rows to test on."""
 
     labelled: Index
@@ -147,26 +147,26 @@ class _Curve:
         self.measured = open_eval_set(opened, data, options.reading)
         self.mixed = [open_training_images(opened.metadata, path) for path in options.mix]
 
-    def measure(self, k: int, draws: Sequence[Draw]) -> list[ShotAccuracy]:
+    def measure(self, k: int, draws: Sequence[ShotDraw]) -> list[ShotAccuracy]:
         """Accuracy of every way of learning from k images a class, drawn anew for each repeat."""
         if not k and self.measured.images.samples.person is None:
             draws = draws[:1]  # all are tested, whatever the draw
         accuracies: dict[str, list[float]] = {}
         for repeat, draw in enumerate(draws):
-            for way, folder in self._learn(k, repeat, draw).items():
-                accuracies.setdefault(way, []).append(self._test(folder, draw))
+            for name, folder in self._learn(k, repeat, draw).items():
+                accuracies.setdefault(name, []).append(self._test(folder, draw))
         tested = min(draw.tested.size for draw in draws)
         return [
             ShotAccuracy(
-                k, way, sum(shares) / len(shares), interval_of_repeats(shares, tested), shares
+                k, name, sum(shares) / len(shares), interval_of_repeats(shares, tested), shares
             )
-            for way, shares in accuracies.items()
+            for name, shares in accuracies.items()
         ]
 
-    def _learn(self, k: int, repeat: int, draw: Draw) -> dict[str, Path]:
+    def _learn(self, k: int, repeat: int, draw: ShotDraw) -> dict[str, Path]:
         """Train in every way; {way: folder of the run}."""
-        here, seed = self.out / f"{k}_a_class" / str(repeat + 1), (self.seed + repeat) % 2**63
-        ways = {TUNED: here / "fine_tuned"} if k else {AS_TRAINED: self.run}
+        folder, seed = self.out / f"{k}_a_class" / str(repeat + 1), (self.seed + repeat) % 2**63
+        ways = {TUNED: folder / "fine_tuned"} if k else {AS_TRAINED: self.run}
         beside = Mixed(joined(self.mixed)) if self.mixed else None
         labelled = self.measured.images.take(draw.labelled)
         if k:
@@ -176,45 +176,46 @@ class _Curve:
             train(chosen, images, ways[TUNED], NoTrainingProgress(), options)
             beside = Mixed(images, weights)
         if self.options.adapt:
-            ways[ADAPTED] = here / "adapted"
-            unlabelled, kept = (self.measured.images, self.measured.rows), beside or ()
-            adapting = AdaptOptions(overwrite=True, epochs=self.options.adapt, mix=kept)
+            ways[ADAPTED] = folder / "adapted"
+            unlabelled = (self.measured.images, self.measured.rows)
+            epochs = self.options.adapt
+            adapting = AdaptOptions(overwrite=True, epochs=epochs, mix=beside or ())
             adapt_run(self.run, unlabelled, ways[ADAPTED], self.device, adapting)
         if k:
-            ways[SCRATCH] = here / "from_scratch"
+            ways[SCRATCH] = folder / "from_scratch"
             images, weights = join_labelled(self.metadata, labelled, [], SHOWN)
             chosen = self.scratch.model_copy(update={"data_weights": weights, "seed": seed})
             train(chosen, images, ways[SCRATCH], NoTrainingProgress())
         return ways
 
-    def _test(self, folder: Path, draw: Draw) -> float:
+    def _test(self, folder: Path, draw: ShotDraw) -> float:
         """Accuracy of a run on the images that are tested."""
         about, model = load_best(folder)
         model.to(self.device)
         rows = draw.tested
-        found = predict_classes(model, about, self.measured.images, rows, self.device, BATCH)
-        return float((found.predicted == found.truth).mean())
+        predictions = predict_classes(model, about, self.measured.images, rows, self.device, BATCH)
+        return float((predictions.predicted == predictions.truth).mean())
 
 
-def draw_shots(data: EvalSet, k: int, seed: int, repeat: int) -> Draw:
+def draw_shots(data: EvalSet, k: int, seed: int, repeat: int) -> ShotDraw:
     """Draw up to k images of each class; those of a smaller k are among those of a larger one."""
     images, rng = data.images, stream(seed, TRAINING, repeat, name="shots")
     order = data.rows[rng.permutation(data.rows.size)]
-    persons, mine = images.samples.person, np.ones(order.size, bool)
+    persons, may_learn = images.samples.person, np.ones(order.size, bool)
     names = sorted({persons[row] for row in data.rows}) if persons is not None else []
     apart = 1 < len(names) < data.rows.size  # several images show the same person or recording
     if apart:
         assert persons is not None
         half = set(rng.permutation(names)[: len(names) // 2].tolist())
-        mine = np.array([persons[row] in half for row in order])
+        may_learn = np.array([persons[row] in half for row in order])
     label = images.samples.label[order]
-    of_class = (order[mine & (label == c)] for c in range(len(images.classes)))
+    of_class = (order[may_learn & (label == c)] for c in range(len(images.classes)))
     labelled = np.concatenate([rows[:k] for rows in of_class])
-    others = order[~mine] if apart else data.rows
-    return Draw(labelled, np.sort(np.setdiff1d(others, labelled)))
+    others = order[~may_learn] if apart else data.rows
+    return ShotDraw(labelled, np.sort(np.setdiff1d(others, labelled)))
 
 
-def find_short_class(data: EvalSet, draw: Draw, k: int) -> str | None:
+def find_short_class(data: EvalSet, draw: ShotDraw, k: int) -> str | None:
     """Find a class that gives fewer than k images to learn from, or none to test on."""
     label, classes = data.images.samples.label, data.images.classes
     learned, tested = (np.bincount(label[rows], minlength=len(classes)) for rows in draw)
@@ -223,7 +224,7 @@ def find_short_class(data: EvalSet, draw: Draw, k: int) -> str | None:
 
 
 def join_labelled(
-    metadata: RunMetadata, labelled: ImageSet, mix: Sequence[ImageSet], most: int
+    metadata: RunMetadata, labelled: ImageSet, mix: Sequence[ImageSet], max_shown: int
 ) -> tuple[ImageSet, tuple[float, ...]]:
     """Images to learn from, and how often an epoch shows those of each set.
 
@@ -233,17 +234,17 @@ def join_labelled(
         metadata: description of the run, whose classes are learned.
         labelled: the few images.
         mix: images that are shown beside them.
-        most: times an epoch that one of the few is shown.
+        max_shown: times an epoch that one of the few is shown.
     """
     count, mass = len(labelled), sum(map(len, mix))
     split = np.repeat(np.array([TRAIN, VALIDATION], np.uint8), count)
     twice = labelled.take(np.tile(np.arange(count), 2))
     twice = replace(twice, samples=replace(twice.samples, split=split))
-    images, shown = joined([twice, *mix]), max(SHOWN, count)
+    images, epoch_size = joined([twice, *mix]), max(SHOWN, count)
     label = labels_for(images, metadata.classes)
     return (
         replace(images, classes=metadata.classes, samples=replace(images.samples, label=label)),
-        (min(shown / count, most), *(shown / mass for _ in mix)),
+        (min(epoch_size / count, max_shown), *(epoch_size / mass for _ in mix)),
     )
 
 
@@ -254,6 +255,6 @@ def interval_of_repeats(shares: Sequence[float], count: int) -> tuple[float, flo
     the repeats together: it covers the choice of what was tested and of what was learned from.
     """
     mean = sum(shares) / len(shares)
-    one = mean * (1 - mean)
+    of_single = mean * (1 - mean)
     spread = variance(shares) / len(shares) if len(shares) > 1 else 0.0
-    return wilson(mean * (n := one / (one / count + spread) if one else count), n)
+    return wilson(mean * (n := of_single / (of_single / count + spread) if of_single else count), n)

@@ -8,7 +8,7 @@ from radhar_cli.figures.clouds import CloudPicture, clouds_png
 from radhar_cli.figures.page import png_bytes
 from radhar_cli.figures.stream_page import LabelledMap, draw_labelled_maps
 from radhar_cli.figures.two_samples import Picture, pictures_png
-from radhar_cli.learning.estimates import Estimates
+from radhar_cli.learning.estimates import RunEstimates
 from radhar_cli.learning.evaluation import Inputs
 from radhar_cli.learning.run_folder import RunMetadata
 from radhar_cli.motion.skeleton import JOINTS, PARENTS
@@ -17,7 +17,9 @@ from radhar_cli.numerics.arrays import Float, Levels
 PICTURES, A_ROW, CLOUDS, STREAMS = 12, 4, 6, 4  # that are drawn at most
 
 
-def draw_overlay(metadata: RunMetadata, inputs: Inputs, estimates: Estimates, path: Path) -> bytes:
+def draw_overlay(
+    metadata: RunMetadata, inputs: Inputs, estimates: RunEstimates, path: Path
+) -> bytes:
     """Draw some of the inputs with what was found in them, evenly spread.
 
     Args:
@@ -49,17 +51,16 @@ def draw_overlay(metadata: RunMetadata, inputs: Inputs, estimates: Estimates, pa
         colours = metadata.colours or "viridis"
         return png_bytes(draw_labelled_maps(maps, estimates.names, colours, "column"))
     height, width = metadata.size
-    drawn = [
-        Picture(_levels(inputs, row), (0, width, 0, height), words[row].replace(", ", "\n"))
-        for row in rows
-    ]
+    drawn = [Picture(_levels(inputs, row), (0, width, 0, height), words[row]) for row in rows]
     lines = {f"{n + 1} ...": drawn[n : n + A_ROW] for n in range(0, len(drawn), A_ROW)}
     return pictures_png(lines, title, "column (px)", "row (px)")
 
 
-def _spread(count: int, most: int) -> list[int]:
-    """At most `most` of so many rows, evenly spread."""
-    rows: list[int] = np.unique(np.linspace(0, count - 1, min(count, most)).astype(int)).tolist()
+def _spread(count: int, max_rows: int) -> list[int]:
+    """At most `max_rows` of so many rows, evenly spread."""
+    rows: list[int] = np.unique(
+        np.linspace(0, count - 1, min(count, max_rows)).astype(int)
+    ).tolist()
     return rows
 
 
@@ -70,7 +71,7 @@ def _levels(inputs: Inputs, row: int) -> Levels:
 
 
 def _cloud_pictures(
-    metadata: RunMetadata, inputs: Inputs, estimates: Estimates
+    metadata: RunMetadata, inputs: Inputs, estimates: RunEstimates
 ) -> list[CloudPicture]:
     """Clouds of frames, evenly spread over all, with the joints or the class found in each.
 

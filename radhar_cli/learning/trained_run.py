@@ -12,7 +12,7 @@ from torch import Tensor, nn
 
 from radhar_cli.dataset.png import colour_table
 from radhar_cli.errors import FolderError
-from radhar_cli.learning.estimates import Estimates, joined_estimates
+from radhar_cli.learning.estimates import RunEstimates, joined_estimates
 from radhar_cli.learning.evaluation import (
     PREDICT_BATCH,
     Inputs,
@@ -142,7 +142,7 @@ class TrainedRun:
         split: str = "all",
         resize: bool = False,
         settings: Mapping[str, Any] | None = None,
-    ) -> Estimates:
+    ) -> RunEstimates:
         """Find classes or joints in an image, a folder of images, a table of points or a data set.
 
         Args:
@@ -160,7 +160,7 @@ class TrainedRun:
         inputs = open_unlabelled(self.metadata, Path(path), map, part, resize, settings or {})
         return joined_estimates([*self.estimate(inputs)])
 
-    def estimate(self, inputs: Inputs) -> Iterator[Estimates]:
+    def estimate(self, inputs: Inputs) -> Iterator[RunEstimates]:
         """Yield what the network finds, batch by batch.
 
         Raises:
@@ -176,7 +176,7 @@ class TrainedRun:
                     sequence[length:] = np.nan
             values = values.reshape(len(values), *(values.shape[1:] or (1,)))
             names = task.names(about)
-            yield Estimates(inputs.names[part], names, values, inputs.first[part], task)
+            yield RunEstimates(inputs.names[part], names, values, inputs.first[part], task)
 
     def __repr__(self) -> str:
         about = self.metadata

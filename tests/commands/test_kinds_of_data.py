@@ -9,6 +9,9 @@ from helpers.boards import CFG, CLOUDS
 from helpers.command_line import ok, radhar
 from learning.patterns import tree
 
+from radhar_cli.study.audit import audit
+from radhar_cli.study.audit.held_out import Effort
+
 MAPS = """
 radar: {carrier_hz: 24e9, bandwidth_hz: 250e6, prf_hz: 500, adc_rate_hz: 0.4e6}
 activities: [punching, walking]
@@ -85,7 +88,7 @@ def sets(tmp_path_factory: pytest.TempPathFactory) -> Path:
     write_mars(folder / "mars_files")
     prepare(folder, "mars", folder / "mars_files", HALVES, *SHORT)
     write_radhar(folder / "radhar_files")
-    prepare(folder, "radhar", folder / "radhar_files", HALVES, *SHORT)
+    prepare(folder, "radhar", folder / "radhar_files", HALVES, SHORT[0], "recordings.hop_s=2")
     write_tables(folder / "tables")
     prepare(folder, "points", folder / "tables", HALVES, *SHORT, *AXES)
     settings = [word for key in QUICK for word in ("--set", key)]
@@ -171,8 +174,9 @@ COMMANDS = (
 @pytest.mark.usefixtures("blank_figures")
 @pytest.mark.parametrize("kind", KINDS)
 def test_every_command_works_or_says_in_a_line_what_to_do(
-    kind: str, sets: Path, tmp_path: Path
+    kind: str, sets: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
+    monkeypatch.setattr(audit, "QUICK", Effort(trees=2, folds=2, permutations=5))
     for command in COMMANDS:
         done = radhar(*words_of(kind, command, sets, tmp_path))
         expected = REFUSED.get((kind, command))

@@ -94,7 +94,7 @@ def chamfer_distances(clouds: list[Float], measured: list[Float], same: bool) ->
             continue
         every = np.concatenate(others)
         reference = every[:: -(-len(every) // MOST_POINTS)]
-        there = cKDTree(reference).query(cloud)[0].mean()
-        back = cKDTree(cloud).query(reference)[0].mean()
-        distances[number] = (there + back) / 2
+        to_reference = cKDTree(reference).query(cloud)[0].mean()
+        from_reference = cKDTree(cloud).query(reference)[0].mean()
+        distances[number] = (to_reference + from_reference) / 2
     return distances

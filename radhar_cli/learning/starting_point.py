@@ -39,17 +39,21 @@ def start_from(run: Path, model: nn.Module, config: TrainConfig, images: ImageSe
         RunError: the earlier run is damaged.
     """
     metadata, earlier = load_best(run)
-    for aspect, earlier_value, new_value in (
-        ("model", metadata.model, config.model),
-        ("input", metadata.input, config.input_kind),
-        ("image size", metadata.size, images.size),
-        ("target", metadata.settings.target, config.target),
-        ("list of joints", metadata.joints, images.joints),
+    finds_joints = bool(metadata.task.coordinates)
+    size_cure = "--resize brings the images there"
+    if metadata.input == "clouds":
+        size_cure = "--set frames={} --set points={} would fit".format(*metadata.size)
+    for aspect, earlier_value, new_value, cure in (
+        ("model", metadata.model, config.model, f"--model {metadata.model} takes the same"),
+        ("input", metadata.input, config.input_kind, ""),
+        ("image size", metadata.size, images.size, size_cure),
+        ("target", metadata.settings.target, config.target, ""),
+        ("list of joints", metadata.joints, images.joints if finds_joints else metadata.joints, ""),
     ):
         if earlier_value != new_value:
-            cure = "; --resize brings the images there" if aspect == "image size" else ""
             raise ConfigError(
-                f"--init {run}: its {aspect} is {earlier_value}, here it is {new_value}{cure}"
+                f"--init {run}: its {aspect} is {earlier_value}, here it is {new_value}"
+                f"{'; ' * bool(cure)}{cure}"
             )
     weights = earlier.state_dict()
     digest = hashlib.sha256()

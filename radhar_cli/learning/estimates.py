@@ -1,4 +1,4 @@
-"""What a network finds in images and sequences, and the files that `predict` writes of it."""
+"""Findings of a network in images and sequences, and the files that `predict` writes of them."""
 
 import io
 import json

@@ -74,7 +74,7 @@ class ShotAccuracy:
 
 @dataclass(frozen=True)
 class ShotOptions:
-    """What is asked of a curve of few shots, beside its run and data."""
+    """Settings of a curve of few shots, beside its run and data."""
 
     shots: Sequence[int]  # numbers of labelled images of each class
     repeats: int = 5  # draws of each

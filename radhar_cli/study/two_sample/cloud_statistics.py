@@ -1,4 +1,4 @@
-"""What tells the point clouds of one radar from those of another, in numbers."""
+"""Statistics that tell the point clouds of one radar from those of another."""
 
 import numpy as np
 from scipy.spatial import cKDTree

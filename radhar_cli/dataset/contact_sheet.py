@@ -42,13 +42,13 @@ def draw_contact_sheet(data: Dataset, name: str, per_class: int, path: Path) -> 
         if name == "points":
             levels = over_bones(data, sample, levels)
         panel.imshow(levels[strides], extent=extent, **look)
-        panel.tick_params(labelsize=5, length=2)
+        panel.tick_params(length=2)
         panel.label_outer()
-    figure.supxlabel("time (s)", fontsize=8)
-    figure.supylabel("{} ({})".format(*row_axis(name)), fontsize=8)
+    figure.supxlabel("time (s)")
+    figure.supylabel("{} ({})".format(*row_axis(name)))
     power = describe_levels(image, "brightest", "darkest")
     meaning = "cells that the CFAR sets" if image.kind == "cfar" else power
-    figure.suptitle(f"{name}: {meaning}", fontsize=9)
+    figure.suptitle(f"{name}: {meaning}")
     write_figure(figure, path, DPI)
 
 

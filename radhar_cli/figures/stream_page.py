@@ -56,19 +56,19 @@ def draw_labelled_maps(
             aspect="auto",
             extent=labelled.extent,
         )
-        axes.set_title(labelled.title, fontsize=8, loc="left", pad=2)
-        axes.set_ylabel(labelled.rows, fontsize=7)
-        axes.tick_params(labelsize=6, length=2, labelbottom=False)
+        axes.set_title(labelled.title, loc="left", pad=2)
+        axes.set_ylabel(labelled.rows)
+        axes.tick_params(length=2, labelbottom=False)
         for strip, labels in labelled.strips.items():
             axes = next(panel)
             _draw_strip(axes, labels, labelled.extent, names, colours)
-            axes.set_ylabel(strip, fontsize=7, rotation=0, ha="right", va="center")
-            axes.tick_params(labelsize=6, length=2, labelbottom=False)
+            axes.set_ylabel(strip, rotation=0, ha="right", va="center")
+            axes.tick_params(length=2, labelbottom=False)
         axes.tick_params(labelbottom=True)
-    axes.set_xlabel("time (s)", fontsize=7)
+    axes.set_xlabel("time (s)")
     present = np.unique(np.concatenate([labels for m in maps for labels in m.strips.values()]))
     handles = [Patch(color=colours[n], label=names[n]) for n in present.tolist() if n >= 0]
-    figure.legend(handles=handles, loc="outside right upper", fontsize=7, frameon=False)
+    figure.legend(handles=handles, loc="outside right upper", frameon=False)
     return figure
 
 
@@ -98,7 +98,7 @@ def _draw_strip(
         name = names[label].replace("_", " ")
         if name not in AT_REST and (stop - start) / labels.size > NAMED_SHARE * len(name):
             middle = left + 0.5 * (start + stop) * step
-            axes.text(middle, 0.5, name, fontsize=6, ha="center", va="center")
+            axes.text(middle, 0.5, name, ha="center", va="center")
     axes.set_xlim(left, right)
     axes.set_ylim(0, 1)
     axes.set_yticks([])

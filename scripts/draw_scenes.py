@@ -170,7 +170,7 @@ def ringing(path: Path) -> None:
     for name, wall in WALLS.items():
         left = np.abs(turn @ (np.hanning(f.size) * wall.transfer_function(f, np.ones(1)) ** 2))
         panels[2].plot(away, 20 * np.log10(left / left.max()), label=name)
-    panels[2].set(title="a point behind the wall, Hann (dB)", xlabel="range behind it (m)")
+    panels[2].set(title="a point behind a wall (dB)", xlabel="range behind it (m)")
     panels[2].set(ylim=(-60, 2))
     panels[2].legend()
     save_picture(figure, path, 110, BY)

@@ -23,7 +23,7 @@ ASPECTS = """
 seed: 5
 activities: [walking]
 duration_s: 4
-radar: {prf_hz: 4000, aspect: {distance_m: 4, about_m: [3, 0], height_m: 1.0}}
+radar: {prf_hz: 5000, aspect: {distance_m: 4, about_m: [3, 0], height_m: 1.0}}
 radars:
   front: {aspect: {angle_deg: 0}}
   side: {aspect: {angle_deg: 90}}
@@ -99,7 +99,7 @@ def draw_aspect(above: Any, below: Any, simulation: Simulation, name: str) -> An
         axis.plot(simulation.truth.time, track, "w--", lw=1)
         axis.set(xlabel="time (s)", xlim=(0, 4))
     above.set(title=f"{name}: looks along {angle} degrees", ylabel="Doppler (Hz)")
-    above.set_ylim(-2000, 2000)  # +-PRF/2: no foot leaves the map
+    above.set_ylim(-2500, 2500)  # +-PRF/2: no foot leaves the map
     below.set(ylabel="range (m)", ylim=(0, 10))
     return drawn
 

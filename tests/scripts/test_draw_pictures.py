@@ -6,6 +6,12 @@ from matplotlib.figure import Figure
 from PIL import Image
 
 
+def _need_history() -> None:
+    is_clone = (script.ROOT / ".git").exists()
+    if not is_clone or script.git("rev-parse", "--is-shallow-repository") == "true":
+        pytest.skip("the history is not here")
+
+
 def test_every_picture_is_recorded_as_it_is() -> None:
     drawn = {str(p.relative_to(script.PICTURES)): script.digest(p) for p in script.all_pictures()}
     recorded = {name: entry["sha256"] for name, entry in script.read_record().items()}
@@ -15,11 +21,7 @@ def test_every_picture_is_recorded_as_it_is() -> None:
 def test_every_picture_has_its_commit_and_its_maker() -> None:
     entries = script.read_record()
     assert all(entry["by"] for entry in entries.values())
-    if (
-        not (script.ROOT / ".git").exists()
-        or script.git("rev-parse", "--is-shallow-repository") == "true"
-    ):
-        pytest.skip("the history is not here")
+    _need_history()
     for commit in {entry["commit"] for entry in entries.values()}:
         assert script.git("cat-file", "-t", commit) == "commit", commit
 
@@ -35,11 +37,7 @@ def test_a_saved_picture_keeps_all_its_colours(tmp_path) -> None:
 
 
 def test_pictures_are_listed_with_their_dates(capsys: pytest.CaptureFixture[str]) -> None:
-    if (
-        not (script.ROOT / ".git").exists()
-        or script.git("rev-parse", "--is-shallow-repository") == "true"
-    ):
-        pytest.skip("the history is not here")
+    _need_history()
     script.main([])
     lines = capsys.readouterr().out.splitlines()
     assert len(lines) == len(script.all_pictures())

@@ -3,9 +3,9 @@
     python scripts/draw_people.py [-o docs/images] [--index 1] [--falls]
 
 Each cell shows the body from its side and, below, from where it faces at first, where the radar is;
-its right side is green, its left orange. Scenes: configs/human/free_space_77GHz.yaml, facing the radar. people_frames.png has a
-row of frames for each activity. --falls draws falls.png instead: what people of
-configs/human/older.yaml do around falls, from their side.
+its right side is green, its left orange. Scenes: configs/human/free_space_77GHz.yaml, facing the
+radar. people_frames.png has a row of frames for each activity. --falls draws falls.png instead:
+what people of configs/human/older.yaml do around falls, from their side.
 """
 
 import argparse

@@ -14,7 +14,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from draw_pictures import record
+from draw_pictures import record_pictures
 from PIL import Image, ImageDraw, ImageFont
 
 from radhar_cli.config.data_set import Config
@@ -177,7 +177,7 @@ def main() -> None:
     arguments.out.mkdir(parents=True, exist_ok=True)
     path = arguments.out / "clouds.png"
     _with_legend(Image.fromarray(np.concatenate(rows))).save(path, optimize=True)
-    record([path], "python scripts/draw_clouds.py")
+    record_pictures([path], "python scripts/draw_clouds.py")
 
 
 def _with_legend(cells: Image.Image) -> Image.Image:

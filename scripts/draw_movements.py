@@ -15,7 +15,7 @@ from pathlib import Path
 
 import numpy as np
 from draw_people import frames
-from draw_pictures import record
+from draw_pictures import record_pictures
 from PIL import Image, ImageDraw
 
 from radhar_cli.config import Config
@@ -246,7 +246,7 @@ def main() -> None:
         draw_picture(name).save(path, optimize=True)
         print(f"{path}: {path.stat().st_size} bytes", flush=True)
     paths = [PICTURES / f"{name}.png" for name in given_names]
-    record(paths, "python scripts/draw_movements.py")
+    record_pictures(paths, "python scripts/draw_movements.py")
 
 
 if __name__ == "__main__":

@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import TypeAlias
 
 import numpy as np
-from draw_pictures import record
+from draw_pictures import record_pictures
 from PIL import Image, ImageColor, ImageDraw, ImageFont
 
 from radhar_cli.config import Config, load_config
@@ -116,7 +116,9 @@ def draw_people(config: Config, index: int, out: Path) -> None:
         loop=0,
     )
     _with_legend(_tiled(rows)).save(out / "people_frames.png", optimize=True)
-    record([out / "people.gif", out / "people_frames.png"], "python scripts/draw_people.py")
+    record_pictures(
+        [out / "people.gif", out / "people_frames.png"], "python scripts/draw_people.py"
+    )
 
 
 def draw_falls(index: int, out: Path) -> None:
@@ -140,7 +142,7 @@ def draw_falls(index: int, out: Path) -> None:
         names = f"{sequence.split()[0].removeprefix('falling_').replace('_', ' ')} {direction}"
         rows.append(frames(motion, np.linspace(0.0, end, FRAMES), names, STILL_SIZE))
     _with_legend(_tiled(rows)).save(out / "falls.png", optimize=True)
-    record([out / "falls.png"], "python scripts/draw_people.py --falls")
+    record_pictures([out / "falls.png"], "python scripts/draw_people.py --falls")
 
 
 def _tiled(cells: list[list[Image.Image]]) -> Image.Image:

@@ -3,7 +3,7 @@
     python scripts/draw_pictures.py                       # print the pictures, oldest first
     python scripts/draw_pictures.py board.png --by 'radhar simulate ...'
 
-Scripts that draw call `save_picture` or `record`; pictures that a command or a person made are
+Scripts that draw call `save_picture` or `record_pictures`; pictures that a command or a person made are
 recorded by the second line. docs/images/pictures.json has the digest, the commit and the maker of
 each; tests/scripts/test_draw_pictures.py keeps it true. Draw with a clean working tree.
 """
@@ -39,11 +39,11 @@ def save_picture(figure: Figure, path: Path, dpi: float, by: str = "") -> None:
     with Image.open(path) as picture:
         whole = picture.convert("RGB")
     whole.save(path, optimize=True)
-    record([path], by)
+    record_pictures([path], by)
     print(path)
 
 
-def record(paths: list[Path], by: str) -> None:
+def record_pictures(paths: list[Path], by: str) -> None:
     """Record pictures of docs/images at the commit of the working tree; others are left alone."""
     pictures = read_record()
     for path in paths:
@@ -91,7 +91,7 @@ def main(arguments: list[str] | None = None) -> None:
     parser.add_argument("--by", default="", help="what made them")
     given = parser.parse_args(arguments)
     if given.names:
-        record([PICTURES / name for name in given.names], given.by)
+        record_pictures([PICTURES / name for name in given.names], given.by)
         return
     lines = []
     for name, entry in read_record().items():

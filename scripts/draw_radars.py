@@ -1,6 +1,6 @@
 """Set every built-in radar beside its data sheet: the table of docs/guide/radars.md, its picture.
 
-    python scripts/draw_radars.py COMMIT [-o docs/images] [--seed 7]
+    python scripts/draw_radars.py COMMIT [-o docs/images] [--seed 7] [--pictures]
 
 Each radar of `radhar config init --radar list` is asked for its figures (range step and end, speed
 limit and step, rate, antennas, width of a beam), which stand beside those of its maker

@@ -3,9 +3,9 @@
     python scripts/draw_pictures.py                       # print the pictures, oldest first
     python scripts/draw_pictures.py board.png --by 'radhar simulate ...'
 
-Scripts that draw call `save_picture` or `record_pictures`; pictures that a command or a person made are
-recorded by the second line. docs/images/pictures.json has the digest, the commit and the maker of
-each; tests/scripts/test_draw_pictures.py keeps it true. Draw with a clean working tree.
+Scripts that draw call `save_picture` or `record_pictures`; pictures that a command or a person
+made are recorded by the second line. docs/images/pictures.json has the digest, the commit and the
+maker of each; tests/scripts/test_draw_pictures.py keeps it true. Draw with a clean working tree.
 """
 
 import argparse

@@ -10,10 +10,13 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from draw_pictures import save_picture
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.image import AxesImage
 
 from radhar_cli.config.data_set import Config
+from radhar_cli.figures.page import page
 from radhar_cli.numerics.arrays import Float
 from radhar_cli.processing.image import decibels
 from radhar_cli.processing.power_map import PowerMap
@@ -59,31 +62,34 @@ def step_rate(simulation: Simulation) -> float:
     return 2 * float(rates[spectrum.argmax()])
 
 
-def draw(axes: Axes, power_map: PowerMap, unit: float = 1.0) -> None:
+def draw(axes: Axes, power_map: PowerMap, unit: float = 1.0) -> AxesImage:
     """Draw a map in decibels below its peak, rows in a unit of their own."""
     left, right, low, high = power_map.extent
-    axes.imshow(
+    return axes.imshow(
         decibels(power_map.power, RANGE_DB),
         extent=(left, right, low / unit, high / unit),
         origin="lower",
         aspect="auto",
         cmap="viridis",
+        vmin=-RANGE_DB,
+        vmax=0,
     )
 
 
 def draw_figure() -> Figure:
     """Draw both maps with the truth over them."""
-    figure = Figure(figsize=(11, 4), layout="constrained")
+    figure = page(9.6, 3.8)
     first, second = figure.subplots(1, 2)
     across = simulate_walk(ACROSS, "azimuth_time")
     draw(first, across.maps["azimuth_time"])
     first.plot(across.truth.time, azimuth_of_torso(across), "w--", linewidth=1)
     first.set(xlabel="time (s)", ylabel="azimuth (degree)", title="azimuth_time, walking across")
     towards = simulate_walk(TOWARDS, "stft_cadence")
-    draw(second, towards.maps["stft_cadence"], 2 * towards.waveform.f0 / SPEED_OF_LIGHT)
+    drawn = draw(second, towards.maps["stft_cadence"], 2 * towards.waveform.f0 / SPEED_OF_LIGHT)
     second.axvline(step_rate(towards), color="white", linestyle="--", linewidth=1)
     title = f"stft_cadence, walking; {step_rate(towards):.2f} steps a second"
     second.set(ylim=(-1, 5), xlabel="cadence (Hz)", ylabel="approaching (m/s)", title=title)
+    figure.colorbar(drawn, ax=[first, second], label="dB below the peak", pad=0.01)
     return figure
 
 
@@ -92,8 +98,8 @@ def main(arguments: list[str] | None = None) -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("-o", "--out", type=Path, default=ROOT / "docs/images")
     folder = parser.parse_args(arguments).out
-    draw_figure().savefig(folder / "angles_cadences.png", dpi=90)
-    print(folder / "angles_cadences.png")
+    by = "python scripts/draw_angles_cadences.py"
+    save_picture(draw_figure(), folder / "angles_cadences.png", 110, by)
 
 
 if __name__ == "__main__":

@@ -9,17 +9,18 @@ configs/paper/figures_free_space.yaml and figures_through_wall.yaml.
 import argparse
 import tempfile
 from pathlib import Path
+from textwrap import wrap
 
 import h5py
-import matplotlib
-import matplotlib.pyplot as plt
-from PIL import Image
+from draw_pictures import LARGE, save_picture
+from matplotlib import rc_context
 
 from radhar_cli.commands.terminal import BarProgress
 from radhar_cli.config import MAP_NAMES, load_config
 from radhar_cli.dataset.build import build
 from radhar_cli.dataset.layout import DATASET
 from radhar_cli.figures.maps_panel import TITLES
+from radhar_cli.figures.page import page
 from radhar_cli.motion.activities.activity import ACTIVITIES
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -54,9 +55,8 @@ OVERVIEW = (
 
 def draw(place: Path, rows: tuple[tuple[str, str, str], ...], height: float, out: Path) -> None:
     """Write a figure with a row for every (scenario, map, label) and a column for every class."""
-    figure, axes = plt.subplots(
-        len(rows), 12, figsize=(19, height), sharex="row", sharey="row", layout="constrained"
-    )
+    figure = page(19, height)
+    axes = figure.subplots(len(rows), 12, sharex="row", sharey="row")
     for row, (scenario, name, label) in zip(axes, rows, strict=True):
         unit = 1e3 if scenario in IN_KHZ and name != "rtm" else 1.0
         with h5py.File(place / scenario / DATASET) as file:
@@ -66,19 +66,16 @@ def draw(place: Path, rows: tuple[tuple[str, str, str], ...], height: float, out
                 drawn = panel.imshow(
                     levels / 5.1 - 50, extent=extent, aspect="auto", vmin=-50, vmax=0
                 )
-                panel.tick_params(labelsize=7)
         if name == "rtm":
             row[0].set_ylim(0, 14 if scenario.startswith("people") else 7.4)
-        row[0].set_ylabel(label, fontsize=8)
+        row[0].set_ylabel(label)
     for panel, activity in zip(axes[0], ACTIVITIES, strict=True):
-        panel.set_title(f"{activity.label} {activity.slug.replace('_', ' ')}", fontsize=9)
+        words = f"{activity.label} {activity.slug.replace('_', ' ')}"
+        panel.set_title("\n".join(wrap(words, 13)))
     for panel in axes[-1]:
-        panel.set_xlabel("time (s)", fontsize=8)
+        panel.set_xlabel("time (s)")
     figure.colorbar(drawn, ax=axes, pad=0.005, aspect=60, label="power (dB below level 255)")
-    figure.savefig(out, dpi=80)
-    plt.close(figure)
-    with Image.open(out) as picture:
-        picture.convert("RGB").quantize(256, dither=Image.Dither.NONE).save(out, optimize=True)
+    save_picture(figure, out, 80, "python scripts/draw_gallery.py")
     print(out)
 
 
@@ -95,8 +92,7 @@ def main() -> None:
     )
     parser.add_argument("-o", "--out", type=Path, default=ROOT / "docs")
     out = parser.parse_args().out
-    matplotlib.use("Agg")
-    with tempfile.TemporaryDirectory() as name:
+    with tempfile.TemporaryDirectory() as name, rc_context(LARGE):
         place = Path(name)
         for scenario in SCENARIOS:
             path, overrides = CONFIGS[scenario]

@@ -3,7 +3,7 @@
     python scripts/draw_movements.py [--page] [NAME ...]
 
 Pictures are docs/images/movements/NAME.png: the body at some instants, from its side and from where
-it faces at first (its right side red), and the Doppler map of that recording at 24 GHz, in which
+it faces at first (its right side green), and the Doppler map of that recording at 24 GHz, in which
 the person faces the radar. NAMEs draw these alone; --page writes the page alone. Rows come from
 ACTIVITIES, MOVEMENTS, the schema and the vocabulary: what is new there needs no line here.
 """
@@ -15,6 +15,7 @@ from pathlib import Path
 
 import numpy as np
 from draw_people import frames
+from draw_pictures import record_pictures
 from PIL import Image, ImageDraw
 
 from radhar_cli.config import Config
@@ -42,8 +43,8 @@ FIGURES, FIGURE_WIDTH, VIEW = 8, 88, 104
 PIXELS_PER_METRE = 44
 STEADY_S = 2.1  # time from the first to the last figure of what goes on and on
 HIGHEST_MPS = 7.0  # of the map
-COLOURS, MAP_COLOURS = 8, 16  # of the palettes, so that pictures stay small
-MAX_BYTES = 25_000
+COLOURS, MAP_COLOURS = 24, 64  # of the palettes, so that pictures stay small
+MAX_BYTES = 45_000
 
 
 def config_of(name: str, start_m: float | None = None) -> Config:
@@ -81,11 +82,21 @@ def draw_picture(name: str) -> Image.Image:
         config = config_of(name, FAR_M)
         scene, _ = draw_valid_scene(config, activity, INDEX)
     image = synthesise(scene, plan_images(config), config).images["stft"]
-    panel = _map_panel(image.levels, config.image.colour_map)
-    return _joined(_figure_panel(name, activity, scene), panel)
+    times = _figure_times(name, activity, scene)
+    panel = _map_panel(image.levels, config.image.colour_map, times)
+    return _joined(_figure_panel(name, scene, times), panel)
 
 
-def _figure_panel(name: str, activity: Activity, scene: Scene) -> Image.Image:
+def _figure_times(name: str, activity: Activity, scene: Scene) -> Float:
+    """Instants of the figures of a scene, s; none of nobody."""
+    if name == NOBODY:
+        return np.zeros(0)
+    motion = motion_of(scene.people[0])
+    assert isinstance(motion, HumanMotion)
+    return instants(activity, motion)
+
+
+def _figure_panel(name: str, scene: Scene, times: Float) -> Image.Image:
     """Figures [2 VIEW, FIGURES * FIGURE_WIDTH] of the person of a scene; none of nobody."""
     panel = Image.new("RGB", (FIGURES * FIGURE_WIDTH, 2 * VIEW), "white")
     if name == NOBODY:
@@ -94,7 +105,7 @@ def _figure_panel(name: str, activity: Activity, scene: Scene) -> Image.Image:
     motion = motion_of(scene.people[0])
     assert isinstance(motion, HumanMotion)
     size = (FIGURE_WIDTH, VIEW, PIXELS_PER_METRE)
-    for place, figure in enumerate(frames(motion, instants(activity, motion), "", size)):
+    for place, figure in enumerate(frames(motion, times, "", size)):
         panel.paste(figure, (place * FIGURE_WIDTH, 0))
     return panel
 
@@ -110,11 +121,14 @@ def instants(activity: Activity, motion: HumanMotion) -> Float:
     return np.linspace(middle - STEADY_S / 2, middle + STEADY_S / 2, FIGURES)
 
 
-def _map_panel(levels: Levels, colour_map: str) -> Image.Image:
-    """Doppler map [2 VIEW, 2 VIEW] with its edges in words."""
+def _map_panel(levels: Levels, colour_map: str, times: Float) -> Image.Image:
+    """Doppler map [2 VIEW, 2 VIEW] with its edges in words, and marks at the times (s)."""
     picture = Image.fromarray(colour_table(colour_map)[levels])
     picture = picture.resize((2 * VIEW, 2 * VIEW))
     draw = ImageDraw.Draw(picture)
+    for time in times.tolist():
+        x = time / SECONDS * 2 * VIEW
+        draw.line([(x, 2 * VIEW - 24), (x, 2 * VIEW - 17)], fill="white")
     for text, place in (
         (f"{HIGHEST_MPS:+g} m/s", (3, 2)),
         (f"{-HIGHEST_MPS:+g} m/s", (3, 2 * VIEW - 13)),
@@ -205,7 +219,8 @@ INTRODUCTION = (
     "After this page you know what can be named in `activities:` and `sequence:`, and what it",
     "looks like. `scripts/draw_movements.py` writes it and draws the pictures; a test keeps it",
     "true. Each picture shows the person at eight instants, from the side and from where they face",
-    "at first (right side red), and the Doppler map of 6 s at 24 GHz, facing the radar. The states",
+    "at first (right side green, left orange), and the Doppler map of 6 s at 24 GHz, facing the",
+    "radar; lines in the map mark the instants of the figures. The states",
     "are those at the beginning and the end: movements follow each other in a sequence where these",
     "agree. A movement that is a class takes its usual time within 15 %, or lasts as long as the",
     "recording. Other words are understood, too, in any case, with spaces or hyphens. Keys are",
@@ -225,10 +240,13 @@ def main() -> None:
     if arguments.page:
         return
     PICTURES.mkdir(parents=True, exist_ok=True)
-    for name in arguments.names or names():
+    given_names = arguments.names or names()
+    for name in given_names:
         path = PICTURES / f"{name}.png"
         draw_picture(name).save(path, optimize=True)
-        print(f"{path}: {path.stat().st_size} bytes")
+        print(f"{path}: {path.stat().st_size} bytes", flush=True)
+    paths = [PICTURES / f"{name}.png" for name in given_names]
+    record_pictures(paths, "python scripts/draw_movements.py")
 
 
 if __name__ == "__main__":

@@ -2,10 +2,10 @@
 
     python scripts/draw_people.py [-o docs/images] [--index 1] [--falls]
 
-Each cell shows the body from its side and, below, from where it faces at first; its right side is
-red. Scenes: configs/human/free_space_77GHz.yaml, facing the radar. people_frames.png has a
-row of frames for each activity. --falls draws falls.png instead: what people of
-configs/human/older.yaml do around falls, from their side.
+Each cell shows the body from its side and, below, from where it faces at first, where the radar is;
+its right side is green, its left orange. Scenes: configs/human/free_space_77GHz.yaml, facing the
+radar. people_frames.png has a row of frames for each activity. --falls draws falls.png instead:
+what people of configs/human/older.yaml do around falls, from their side.
 """
 
 import argparse
@@ -13,9 +13,11 @@ from pathlib import Path
 from typing import TypeAlias
 
 import numpy as np
-from PIL import Image, ImageDraw
+from draw_pictures import record_pictures
+from PIL import Image, ImageColor, ImageDraw, ImageFont
 
 from radhar_cli.config import Config, load_config
+from radhar_cli.figures.style import LEFT, RIGHT
 from radhar_cli.motion.activities.activity import ACTIVITIES
 from radhar_cli.motion.human.motion import HumanMotion
 from radhar_cli.motion.skeleton import JOINTS, PARENTS
@@ -30,8 +32,9 @@ OVERRIDES = (
     "on_invalid=keep",
 )
 Size: TypeAlias = tuple[int, int, int]  # width and height of a view, px; pixels a metre
-SIZE: Size = (150, 120, 52)
-FRAMES_PER_SECOND, FRAMES = 10, 13
+SIZE: Size = (150, 126, 56)
+STILL_SIZE: Size = (160, 128, 60)
+FRAMES_PER_SECOND, FRAMES = 10, 8
 # Movements, and the direction of the fall.
 FALLS = (
     ("falling_off_seat getting_up", "forward"),
@@ -44,7 +47,7 @@ FALLS = (
     ("stumbling", "sideways"),
     ("tripping", "forward"),
 )
-COLOURS = {"right": (200, 60, 60), "left": (60, 60, 200)}
+COLOURS = {"right": ImageColor.getrgb(RIGHT), "left": ImageColor.getrgb(LEFT)}
 
 
 def stick_figure(p: Float, hips: Float, name: str, size: Size = SIZE) -> Image.Image:
@@ -70,10 +73,11 @@ def stick_figure(p: Float, hips: Float, name: str, size: Size = SIZE) -> Image.I
             if JOINTS[joint].endswith("knee"):
                 start = sockets[int(side == "left")]
             ends = [*start.tolist(), *points[joint].tolist()]
-            draw.line(ends, fill=COLOURS.get(side, (0, 0, 0)), width=2)
+            draw.line(ends, fill=COLOURS.get(side, (0, 0, 0)), width=max(2, pixels_per_metre // 18))
         x, y = points[JOINTS.index("head")].tolist()
-        draw.ellipse([x - 5, y - 5, x + 5, y + 5], outline=(0, 0, 0))
-    draw.text((3, 2), name, fill=(0, 0, 0))
+        radius = pixels_per_metre / 10
+        draw.ellipse([x - radius, y - radius, x + radius, y + radius], outline=(0, 0, 0))
+    draw.text((3, 2), name, fill=(0, 0, 0), font=ImageFont.load_default(13))
     return picture
 
 
@@ -98,8 +102,8 @@ def draw_people(config: Config, index: int, out: Path) -> None:
     for activity in ACTIVITIES:
         motion = motion_of(draw_scene(config, activity, index).people[0])
         assert isinstance(motion, HumanMotion)
-        moving.append(frames(motion, film, activity.label))
-        rows.append(frames(motion, stills, activity.slug.replace("_", " ")))
+        moving.append(frames(motion, film, f"{activity.label} {activity.slug.replace('_', ' ')}"))
+        rows.append(frames(motion, stills, activity.slug.replace("_", " "), STILL_SIZE))
     grid = [
         _tiled([[moving[6 * row + n][k] for n in range(6)] for row in range(2)])
         for k in range(film.size)
@@ -111,7 +115,10 @@ def draw_people(config: Config, index: int, out: Path) -> None:
         duration=1000 // FRAMES_PER_SECOND,
         loop=0,
     )
-    _tiled(rows).save(out / "people_frames.png", optimize=True)
+    _with_legend(_tiled(rows)).save(out / "people_frames.png", optimize=True)
+    record_pictures(
+        [out / "people.gif", out / "people_frames.png"], "python scripts/draw_people.py"
+    )
 
 
 def draw_falls(index: int, out: Path) -> None:
@@ -133,14 +140,32 @@ def draw_falls(index: int, out: Path) -> None:
         assert isinstance(motion, HumanMotion)
         end = min(motion.parts[-1][0].end, 6.0)
         names = f"{sequence.split()[0].removeprefix('falling_').replace('_', ' ')} {direction}"
-        rows.append(frames(motion, np.linspace(0.0, end, FRAMES), names))
-    _tiled(rows).save(out / "falls.png", optimize=True)
+        rows.append(frames(motion, np.linspace(0.0, end, FRAMES), names, STILL_SIZE))
+    _with_legend(_tiled(rows)).save(out / "falls.png", optimize=True)
+    record_pictures([out / "falls.png"], "python scripts/draw_people.py --falls")
 
 
 def _tiled(cells: list[list[Image.Image]]) -> Image.Image:
-    """Pictures of one size in rows, of 16 colours."""
+    """Pictures of one size in rows, of 64 colours."""
     whole = np.concatenate([np.concatenate([np.asarray(c) for c in row], axis=1) for row in cells])
-    return Image.fromarray(whole).quantize(16, dither=Image.Dither.NONE)
+    return Image.fromarray(whole).quantize(64, dither=Image.Dither.NONE)
+
+
+def _with_legend(tiles: Image.Image) -> Image.Image:
+    """Pictures with the meaning of their colours and views in a line above."""
+    side = "above from the side, the radar on the right"
+    words = f"{side}; below from the radar, which the person faces at first"
+    whole = Image.new("RGB", (tiles.width, tiles.height + 26), "white")
+    draw, x, font = ImageDraw.Draw(whole), 6.0, ImageFont.load_default(16)
+    for text, colour in (
+        ("right side", COLOURS["right"]),
+        ("left side", COLOURS["left"]),
+        (words, (0, 0, 0)),
+    ):
+        draw.text((x, 3), text, fill=colour, font=font)
+        x += draw.textlength(text, font) + 24
+    whole.paste(tiles, (0, 26))
+    return whole.quantize(64, dither=Image.Dither.NONE)
 
 
 def main() -> None:

@@ -1,6 +1,6 @@
 """Set every built-in radar beside its data sheet: the table of docs/guide/radars.md, its picture.
 
-    python scripts/draw_radars.py COMMIT [-o docs/images] [--seed 7]
+    python scripts/draw_radars.py COMMIT [-o docs/images] [--seed 7] [--pictures]
 
 Each radar of `radhar config init --radar list` is asked for its figures (range step and end, speed
 limit and step, rate, antennas, width of a beam), which stand beside those of its maker
@@ -18,10 +18,9 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from draw_pictures import save_picture
 from matplotlib.axes import Axes
-from matplotlib.figure import Figure
 from page_parts import replace_part
-from PIL import Image
 
 from radhar_cli.config import Config, load_config
 from radhar_cli.config.documents import RADARS, WRITTEN_RADARS
@@ -29,6 +28,8 @@ from radhar_cli.config.identity import yaml_text
 from radhar_cli.config.radar import CwRadar
 from radhar_cli.config.starting_file import of_board
 from radhar_cli.config.yaml_reader import parse_yaml
+from radhar_cli.figures.page import page
+from radhar_cli.figures.style import SPEEDS
 from radhar_cli.numerics.arrays import Float
 from radhar_cli.numerics.constants import SPEED_OF_LIGHT
 from radhar_cli.scene.radar_figures import RadarFigures, describe_figures, figures_of
@@ -214,28 +215,26 @@ def _with_source(sheet: Sheet, is_memory: bool) -> list[tuple[str, tuple[float, 
 
 def draw_panels(walks: Mapping[str, Simulation], path: Path) -> None:
     """Draw three panels a radar, one radar a row, in letters that a page's width leaves legible."""
-    figure = Figure(figsize=(9.6, 2.2 * len(walks)), dpi=100, layout="constrained")
+    figure = page(9.6, 1.9 * len(walks) + 0.6)
     grid = figure.subplots(len(walks), 3, squeeze=False)
     for panels, (name, simulation) in zip(grid, walks.items(), strict=True):
         _draw_radar(panels, name, simulation)
-    for axes in grid.flat:
-        axes.tick_params(labelsize=9)
-        axes.xaxis.label.set_size(10)
-        axes.yaxis.label.set_size(10)
-    figure.savefig(path)
-    Image.open(path).convert("RGB").quantize(256).save(path, optimize=True)
+    drawn = next(axes.images[0] for axes in grid.flat if axes.images)
+    where: dict[str, Any] = {"ax": list(grid[0]), "location": "top", "shrink": 0.5, "aspect": 40}
+    figure.colorbar(drawn, label="maps: dB below the peak of each", **where)
+    save_picture(figure, path, 100, "python scripts/draw_radars.py --pictures COMMIT")
 
 
 def _draw_radar(panels: Any, name: str, simulation: Simulation) -> None:
     """Draw what a radar sees: ranges, speeds, and points or its figures in words."""
     _draw_ranges(panels[0], simulation)
-    panels[0].set_title(name, fontsize=12, loc="left", weight="bold")
+    panels[0].set_title(name, loc="left", weight="bold")
     if "stft" in simulation.maps:
         spectrogram = simulation.maps["stft"]
         hertz = SPEED_OF_LIGHT / (2 * simulation.waveform.f0)
         left, right, low, high = spectrogram.extent
         _draw_map(panels[1], spectrogram.power, (left, right, low * hertz, high * hertz))
-        panels[1].set(xlabel="time (s)", ylabel="speed (m/s)")
+        panels[1].set(xlabel="time (s)", ylabel="approaching (m/s)", xlim=(0, SECONDS))
     else:
         _write_instead(panels[1], "no Doppler")
     if "cloud" in simulation.frames:
@@ -251,11 +250,12 @@ def _draw_ranges(axes: Axes, simulation: Simulation) -> None:
     if frames is not None:
         moment = int(np.argmin(np.abs(_torso_at(simulation, frames.times) - NEAR_M)))
         _draw_map(axes, frames.shown.power[moment], frames.extent)
-        axes.set(xlabel="speed (m/s)", ylabel="range (m)", ylim=(0, 6))
+        axes.set(xlabel="approaching (m/s)", ylabel="range (m)", ylim=(0, 6))
     elif "rtm" in simulation.maps:
         shown = simulation.maps["rtm"]
         _draw_map(axes, shown.power, shown.extent)
-        axes.set(xlabel="time (s)", ylabel="range (m)", ylim=(0, 6))
+        highest = min(6.0, shown.extent[3])
+        axes.set(xlabel="time (s)", ylabel="range (m)", xlim=(0, SECONDS), ylim=(0, highest))
     else:
         assert isinstance(simulation.config.radar, CwRadar)
         _write_instead(axes, "no range")
@@ -265,7 +265,7 @@ def _write_instead(axes: Axes, words: str) -> None:
     """Write words in the middle of a panel that has nothing to draw."""
     axes.set_axis_off()
     where = {"ha": "center", "va": "center", "transform": axes.transAxes}
-    axes.text(0.5, 0.5, words, fontsize=11, linespacing=1.4, **where)
+    axes.text(0.5, 0.5, words, fontsize=10, linespacing=1.4, **where)
 
 
 def _draw_map(axes: Axes, power: Float, extent: tuple[float, float, float, float]) -> None:
@@ -280,7 +280,7 @@ def _draw_cloud(axes: Axes, simulation: Simulation) -> None:
     """Draw the points of all frames from above over the torso's way; left of the radar is left."""
     cloud, skeletons = simulation.frames["cloud"], simulation.frames.get("skeletons")
     ahead, left = cloud.points[:, 0], cloud.points[:, 1]
-    axes.scatter(left, ahead, s=5, c=cloud.points[:, 3], cmap="coolwarm", vmin=-2, vmax=2)
+    axes.scatter(left, ahead, s=5, c=cloud.points[:, 3], cmap=SPEEDS, vmin=-2, vmax=2)
     if skeletons is not None:
         torso = skeletons.positions[:, 0, 0]
         axes.plot(torso[:, 1], torso[:, 0], color="0.4", linewidth=1)
@@ -293,23 +293,28 @@ def main() -> None:
     parser.add_argument("commit", help="commit that is measured")
     parser.add_argument("-o", "--out", type=Path, default=ROOT / "docs/images")
     parser.add_argument("--seed", type=int, default=7)
+    parser.add_argument("--pictures", action="store_true", help="leave the page as it is")
     arguments = parser.parse_args()
     sheets, sources, _ = read_sheets()
     drawn, rows = {*chain.from_iterable(PICTURES.values())}, []
     walks = dict[str, Simulation]()
     for name in (*WRITTEN_RADARS, *RADARS):
+        if arguments.pictures and name not in drawn:
+            continue
         walk = walk_to(name, arguments.seed)
         rows.append(table_row(name, compute_figures(name), sheets[name], level_above_noise(walk)))
         print(rows[-1], flush=True)
         if name in drawn:
             walks[name] = walk
-    command = f"python scripts/draw_radars.py COMMIT --seed {arguments.seed}"
-    note = f"(`{command}`, at {arguments.commit})"
-    page = replace_part(PAGE.read_text(), "radars", "\n".join((HEAD, *rows, "", note)))
-    listed = [f"- {name}: {where}" for name, where in sources.items() if name != CALCULATED]
-    PAGE.write_text(replace_part(page, "sources", "\n".join(listed)))
     for picture, names in PICTURES.items():
         draw_panels({name: walks[name] for name in names}, arguments.out / picture)
+    if arguments.pictures:
+        return
+    command = f"python scripts/draw_radars.py COMMIT --seed {arguments.seed}"
+    note = f"(`{command}`, at {arguments.commit})"
+    text = replace_part(PAGE.read_text(), "radars", "\n".join((HEAD, *rows, "", note)))
+    listed = [f"- {name}: {where}" for name, where in sources.items() if name != CALCULATED]
+    PAGE.write_text(replace_part(text, "sources", "\n".join(listed)))
 
 
 if __name__ == "__main__":

@@ -11,12 +11,12 @@ import argparse
 from pathlib import Path
 from typing import Any
 
-import matplotlib
-import matplotlib.pyplot as plt
 import numpy as np
+from draw_pictures import save_picture
 from matplotlib.axes import Axes
 
 from radhar_cli.config import Config
+from radhar_cli.figures.page import page
 from radhar_cli.motion.activities.activity import activity_named
 from radhar_cli.processing.power_map import PowerMap
 from radhar_cli.radar.fmcw import SPEED_OF_LIGHT
@@ -29,6 +29,7 @@ from radhar_cli.scene.room import ways_of
 from radhar_cli.scene.scene import Scene, nominal_scene
 
 ROOT = Path(__file__).resolve().parents[1]
+BY = "python scripts/draw_scenes.py"
 WALKING = activity_named("walking")
 WALK: dict[str, Any] = {"activities": ["walking"], "snr_db": None, "on_invalid": "keep"}
 CROSSING: dict[str, Any] = {
@@ -93,14 +94,15 @@ def show(panel: Axes, shown: PowerMap, title: str, least: float, most: float) ->
     extent = (times[0], times[-1], rows[kept][0], rows[kept][-1])
     drawn = panel.imshow(level, origin="lower", aspect="auto", vmin=-50, vmax=0, extent=extent)
     panel.set(title=title, xlabel="time (s)", ylabel=f"{shown.rows.name} ({shown.rows.unit})")
-    plt.colorbar(drawn, ax=panel, label="power (dB below the largest)")
+    figure = panel.get_figure(root=True)
+    assert figure is not None
+    figure.colorbar(drawn, ax=panel, label="dB below the largest")
 
 
 def crossing(path: Path) -> None:
     """Plan, range-time, Doppler, and what shadows leave of each person's echo."""
-    figure, (plan, ranges, doppler, kept) = plt.subplots(
-        1, 4, figsize=(16, 3.6), layout="constrained"
-    )
+    figure = page(9.6, 6.6)
+    (plan, ranges), (kept, doppler) = figure.subplots(2, 2)
     scene = scene_of(CROSSING, body={"scatterers": "segments"})
     maps = record(scene, ["rtm", "stft"])
     show(ranges, maps["rtm"], "range-time", 0, 9)
@@ -118,16 +120,17 @@ def crossing(path: Path) -> None:
         left = (one[mine] ** 2).sum(axis=0) / (two[mine] ** 2).sum(axis=0)
         kept.plot(t, 10 * np.log10(left), colour, label=name)
     plan.plot(0, 0.4, "k^")
-    plan.set(title="plan, a mark each second", xlabel="y (m)", ylabel="x (m)", xlim=(-2, 2))
+    plan.set(title="plan, a mark each second", xlabel="left (m)", ylabel="ahead (m)", xlim=(-2, 2))
     plan.invert_xaxis()
     kept.set(title="echo kept behind the other (dB)", xlabel="time (s)")
     kept.legend()
-    figure.savefig(path, dpi=80)
+    save_picture(figure, path, 110, BY)
 
 
 def corner(path: Path) -> None:
     """Range-time and Doppler without and with two walls; where each kind of path should be."""
-    figure, panels = plt.subplots(2, 2, figsize=(11, 6.5), layout="constrained")
+    figure = page(9.6, 6.4)
+    panels = figure.subplots(2, 2)
     for walls, (ranges, doppler) in zip(({}, CORNER_WALLS), panels, strict=True):
         scene = scene_of(CORNER, body={"scatterers": "segments"}, room=walls)
         maps, name = record(scene, ["rtm", "stft"]), "two walls" if walls else "in the open"
@@ -142,19 +145,20 @@ def corner(path: Path) -> None:
                     3.92,
                     way[1],
                     f"{tx.name}/{rx.name}",
-                    fontsize=7,
+                    fontsize=8,
                     va="center",
                     ha="right",
                     color="w",
                 )
                 ranges.plot(4.0, way[1], "k<", markersize=3, clip_on=False)
         ranges.set_xlim(0, 4)
-    figure.savefig(path, dpi=80)
+    save_picture(figure, path, 110, BY)
 
 
 def ringing(path: Path) -> None:
     """Range-time with one pass of the wall and with all, and what a still point looks like."""
-    figure, panels = plt.subplots(1, 3, figsize=(13, 3.6), layout="constrained")
+    figure = page(9.6, 3.4)
+    panels = figure.subplots(1, 3)
     for echoes, panel, name in zip(
         ("none", "exact"), panels, ("one pass", "all passes"), strict=False
     ):
@@ -166,10 +170,10 @@ def ringing(path: Path) -> None:
     for name, wall in WALLS.items():
         left = np.abs(turn @ (np.hanning(f.size) * wall.transfer_function(f, np.ones(1)) ** 2))
         panels[2].plot(away, 20 * np.log10(left / left.max()), label=name)
-    panels[2].set(title="a point behind the wall, Hann (dB)", xlabel="range behind it (m)")
+    panels[2].set(title="a point behind a wall (dB)", xlabel="range behind it (m)")
     panels[2].set(ylim=(-60, 2))
     panels[2].legend()
-    figure.savefig(path, dpi=80)
+    save_picture(figure, path, 110, BY)
 
 
 def main() -> None:
@@ -178,7 +182,6 @@ def main() -> None:
     )
     parser.add_argument("-o", "--out", type=Path, default=ROOT / "docs/images")
     out = parser.parse_args().out
-    matplotlib.use("Agg")
     out.mkdir(parents=True, exist_ok=True)
     for draw in (crossing, corner, ringing):
         draw(out / f"{draw.__name__}.png")

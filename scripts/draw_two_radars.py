@@ -11,10 +11,11 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
 
-import matplotlib.pyplot as plt
 import numpy as np
+from draw_pictures import save_picture
 
 from radhar_cli.config import Config, load_radars
+from radhar_cli.figures.page import page
 from radhar_cli.scene.single.simulate import Simulation, simulate
 
 PICTURE = Path(__file__).resolve().parents[1] / "docs/images/two_radars.png"
@@ -22,7 +23,7 @@ ASPECTS = """
 seed: 5
 activities: [walking]
 duration_s: 4
-radar: {prf_hz: 4000, aspect: {distance_m: 4, about_m: [3, 0], height_m: 1.0}}
+radar: {prf_hz: 5000, aspect: {distance_m: 4, about_m: [3, 0], height_m: 1.0}}
 radars:
   front: {aspect: {angle_deg: 0}}
   side: {aspect: {angle_deg: 90}}
@@ -46,13 +47,15 @@ SPAN_DB = 40.0
 def main() -> None:
     """Simulate both scenes, draw them, and print how far the radars agree."""
     aspects, boards = (simulate_each(text) for text in (ASPECTS, BOARDS))
-    figure, axes = plt.subplots(3, 2, figsize=(9, 10), layout="constrained")
+    figure = page(9.6, 9.6)
+    axes = figure.subplots(3, 2)
     for column, (name, simulation) in enumerate(aspects.items()):
-        draw_aspect(axes[0, column], axes[1, column], simulation, name)
+        drawn = draw_aspect(axes[0, column], axes[1, column], simulation, name)
     for column, (name, simulation) in enumerate(boards.items()):
-        draw_board(axes[2, column], simulation, name)
-    figure.savefig(PICTURE, dpi=80)
-    plt.close(figure)
+        drawn_board = draw_board(axes[2, column], simulation, name)
+    figure.colorbar(drawn, ax=list(axes[:2].flat), label="dB below the peak", pad=0.01, shrink=0.6)
+    figure.colorbar(drawn_board, ax=list(axes[2]), label="dB below the peak", pad=0.01)
+    save_picture(figure, PICTURE, 110, "python scripts/draw_two_radars.py")
     errors = place_errors(aspects)
     median, most = np.quantile(errors, [0.5, 0.9])
     print(f"torso by both ranges: off by {median:.3f} m in the median, 90 % below {most:.3f} m")
@@ -81,7 +84,7 @@ def true_range(simulation: Simulation) -> tuple[Any, Any]:
     return truth.time, np.linalg.norm(torso - middle, axis=1)
 
 
-def draw_aspect(above: Any, below: Any, simulation: Simulation, name: str) -> None:
+def draw_aspect(above: Any, below: Any, simulation: Simulation, name: str) -> Any:
     """Draw Doppler and range over time of one radar, with what the torso really did."""
     angle = {"front": 0, "side": 90}[name]
     torso = simulation.motion.names.index("torso")
@@ -90,21 +93,25 @@ def draw_aspect(above: Any, below: Any, simulation: Simulation, name: str) -> No
         shown = simulation.maps[key]
         extent = (*shown.columns.edges, *shown.rows.edges)
         levels = {"vmin": -SPAN_DB, "vmax": 0}
-        axis.imshow(decibels(shown.shown), aspect="auto", origin="lower", extent=extent, **levels)
+        drawn = axis.imshow(
+            decibels(shown.shown), aspect="auto", origin="lower", extent=extent, **levels
+        )
         axis.plot(simulation.truth.time, track, "w--", lw=1)
-        axis.set(xlabel="time (s)", ylabel=f"{shown.rows.name} ({shown.rows.unit})")
-    above.set(title=f"{name}: looks along {angle} degrees", ylim=(-1500, 1500))
-    below.set(ylim=(0, 10))
+        axis.set(xlabel="time (s)", xlim=(0, 4))
+    above.set(title=f"{name}: looks along {angle} degrees", ylabel="Doppler (Hz)")
+    above.set_ylim(-2500, 2500)  # +-PRF/2: no foot leaves the map
+    below.set(ylabel="range (m)", ylim=(0, 10))
+    return drawn
 
 
-def draw_board(axis: Any, simulation: Simulation, name: str) -> None:
+def draw_board(axis: Any, simulation: Simulation, name: str) -> Any:
     """Draw the strongest frame of a board's range-angle map, with the true joints at its time."""
     key = f"range_{name}"
     maps = simulation.frames[key].shown
     strongest = int(maps.power.sum(axis=(1, 2)).argmax())
     power = maps.power[strongest]
     cells = maps.columns.values, maps.rows.values, decibels(power)
-    axis.pcolormesh(*cells, vmin=-30, vmax=0, shading="nearest")
+    drawn = axis.pcolormesh(*cells, vmin=-30, vmax=0, shading="nearest")
     board = simulation.board
     assert board is not None
     middle = int(np.abs(simulation.truth.time - maps.times[strongest]).argmin())
@@ -118,8 +125,11 @@ def draw_board(axis: Any, simulation: Simulation, name: str) -> None:
         title=f"{name}, {maps.times[strongest]:.2f} s: joints are dots",
         xlabel=f"{maps.columns.name} ({unit})",
         ylabel=f"{maps.rows.name} ({maps.rows.unit})",
-        ylim=(1, 4.5),
+        ylim=(1, 4),
     )
+    if name == "azimuth":  # left of the radar is left
+        axis.invert_xaxis()
+    return drawn
 
 
 def measured_range(simulation: Simulation) -> tuple[Any, Any]:

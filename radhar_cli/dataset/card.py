@@ -5,7 +5,6 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-import numpy as np
 import yaml
 from PIL import Image, ImageDraw, ImageFont
 
@@ -34,7 +33,7 @@ _WAVEFORMS = {
     "cw": "a CW",
     "impulse": "an impulse",
 }
-SIDE, GAP, LINE = 160, 6, 16  # px
+SIDE, GAP, LINE, MARGIN = 160, 6, 18, 64  # px
 SIZES = ("n<1K", "1K<n<10K", "10K<n<100K", "100K<n<1M", "1M<n<10M", "10M<n<100M", "n>100M")
 
 _NOISE_TELLS = (
@@ -140,13 +139,25 @@ def draw_gallery(data: Dataset, name: str) -> bytes:
     classes = list(order.classes())[:16]
     columns = min(len(classes), 4)
     step, lines = SIDE + GAP, -(-len(classes) // columns)
-    page = Image.fromarray(np.full((lines * (step + LINE), columns * step, 3), 255, np.uint8))
-    draw, font = ImageDraw.Draw(page), ImageFont.load_default(11)
+    size = (MARGIN + columns * step, lines * (step + LINE) + LINE)
+    page = Image.new("RGB", size, "white")
+    draw, font = ImageDraw.Draw(page), ImageFont.load_default(12)
     for number, (activity, rows) in enumerate(classes):
-        x, y = number % columns * step, number // columns * (step + LINE)
+        x, y = MARGIN + number % columns * step, number // columns * (step + LINE)
         image = Image.fromarray(table[data.maps[name][rows.start]])
         page.paste(image.resize((SIDE, SIDE), Image.Resampling.BILINEAR), (x, y + LINE))
-        draw.text((x, y), activity.slug, "black", font)
+        draw.text((x, y), activity.slug.replace("_", " "), "black", font)
+    if (edges := data.extent(name)) is not None:
+        left, right, bottom, top = (f"{float(f'{edge:.3g}'):g}" for edge in edges)
+        row_unit, column_unit = row_axis(name)[1], column_axis(name)[1]
+        look: dict[str, Any] = {"fill": "black", "font": font}
+        for y in range(LINE, lines * (step + LINE), step + LINE):
+            draw.text((MARGIN - GAP, y), f"{top} {row_unit}", anchor="ra", **look)
+            draw.text((MARGIN - GAP, y + SIDE), bottom, anchor="rd", **look)
+        for x in range(MARGIN, MARGIN + columns * step, step):
+            y = lines * (step + LINE)
+            draw.text((x, y), left, anchor="la", **look)
+            draw.text((x + SIDE, y), f"{right} {column_unit}", anchor="ra", **look)
     buffer = io.BytesIO()
     page.save(buffer, "png", compress_level=data.config.output.png_level)
     return buffer.getvalue()

@@ -1,6 +1,7 @@
 """A contact sheet: some samples of every class of a data set."""
 
 from pathlib import Path
+from textwrap import wrap
 from typing import Any
 
 import numpy as np
@@ -10,11 +11,13 @@ from radhar_cli.dataset.file_description import describe_levels
 from radhar_cli.dataset.layout import row_axis
 from radhar_cli.dataset.reading import Dataset
 from radhar_cli.figures.page import DPI, page_of_rows, write_figure
+from radhar_cli.figures.style import SIGNED
 from radhar_cli.motion.skeleton import JOINTS, PARENTS
 from radhar_cli.numerics.arrays import Levels
 from radhar_cli.processing.frame_sheets import bones_sheet
 
 MAX_SIDE = 1024  # px of a panel
+LETTERS_AN_INCH = 12  # of a title
 
 
 def draw_contact_sheet(data: Dataset, name: str, per_class: int, path: Path) -> None:
@@ -35,20 +38,24 @@ def draw_contact_sheet(data: Dataset, name: str, per_class: int, path: Path) -> 
         for label in np.unique(data.label)
     }
     rows = {name: samples[:per_class] for name, samples in rows.items()}
-    figure, panels = page_of_rows(rows, (1.5, 1.4), (1.6, 0.7))
-    look: dict[str, Any] = {"cmap": image.colour_map, "vmin": 0, "vmax": 255, "aspect": "auto"}
+    figure, panels = page_of_rows(rows, (1.7, 1.4), (2.0, 0.8))
+    colours = SIGNED if image.kind == "signed" else image.colour_map
+    look: dict[str, Any] = {"cmap": colours, "vmin": 0, "vmax": 255, "aspect": "auto"}
     for panel, sample in panels:
         levels = images[sample]
         if name == "points":
             levels = over_bones(data, sample, levels)
-        panel.imshow(levels[strides], extent=extent, **look)
-        panel.tick_params(labelsize=5, length=2)
+        drawn = panel.imshow(levels[strides], extent=extent, **look)
+        panel.tick_params(length=2)
         panel.label_outer()
-    figure.supxlabel("time (s)", fontsize=8)
-    figure.supylabel("{} ({})".format(*row_axis(name)), fontsize=8)
+    figure.supxlabel("time (s)")
+    figure.supylabel("{} ({})".format(*row_axis(name)))
     power = describe_levels(image, "brightest", "darkest")
     meaning = "cells that the CFAR sets" if image.kind == "cfar" else power
-    figure.suptitle(f"{name}: {meaning}", fontsize=9)
+    bar = figure.colorbar(drawn, ax=[panel for panel, _ in panels], aspect=60, pad=0.02)
+    bar.set_label("grey level")
+    width = round(LETTERS_AN_INCH * figure.get_figwidth())
+    figure.suptitle("\n".join(wrap(f"{name}: {meaning}", width)))
     write_figure(figure, path, DPI)
 
 

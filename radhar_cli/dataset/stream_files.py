@@ -65,8 +65,7 @@ def labelled_maps(data: Dataset, name: str, rows: list[int]) -> "Iterator[Labell
     for row in rows:
         labels = data.frame_label[name][row : row + 1][0].astype(int)
         strips = {"class" if len(labels) == 1 else f"person {n}": x for n, x in enumerate(labels)}
-        activity, index = samples[row]
-        title = f"{activity.slug}/{index} ({SPLITS[data.split[row]]})"
+        title = f"{samples[row][0].slug}/{samples.name(row)} ({SPLITS[data.split[row]]})"
         yield LabelledMap(title, data.maps[name][row], extents[row].tolist(), quantity, strips)
 
 

@@ -60,15 +60,14 @@ def class_shares_png(bars: Sequence[ShareBar], title: str) -> bytes:
         axes.errorbar(100 * bar.share, place, xerr=ends, color="0.15", capsize=2.5, lw=1)
         chance = 100 * bar.chance
         axes.plot([chance, chance], [place - 0.45, place + 0.45], color="black", lw=1.8)
-        axes.text(101, place, f"{100 * bar.share:.1f}", fontsize=7.5, va="center", clip_on=False)
-    axes.set_yticks(range(len(bars)), [_shorten(bar.name) for bar in bars], fontsize=8)
+        axes.text(101, place, f"{100 * bar.share:.1f}", va="center", clip_on=False)
+    axes.set_yticks(range(len(bars)), [_shorten(bar.name) for bar in bars])
     axes.set(xlim=(0, 100), ylim=(max(len(bars), 1) - 0.4, -0.6))
-    axes.set_xlabel("samples held out whose class is told, mean over classes (%)", fontsize=9)
-    axes.tick_params(axis="x", labelsize=8)
+    axes.set_xlabel("samples held out whose class is told, mean over classes (%)")
     axes.grid(axis="x", alpha=0.3)
     axes.set_axisbelow(True)
     axes.spines[["top", "right"]].set_visible(False)
-    axes.set_title(title, fontsize=9.5, loc="left")
+    axes.set_title(title, loc="left")
     parts = dict.fromkeys(bar.part for bar in bars)
     handles: list[Patch | Line2D] = [
         Patch(color=COLOURS.get(part, "0.5"), alpha=0.75, label=WORDS.get(part, part))
@@ -76,7 +75,7 @@ def class_shares_png(bars: Sequence[ShareBar], title: str) -> bytes:
     ]
     handles.append(Line2D([], [], color="black", lw=1.8, label="chance"))
     handles.append(Line2D([], [], color="0.15", lw=1, label="95 % interval"))
-    figure.legend(handles=handles, loc="outside lower center", ncols=3, fontsize=8, frameon=False)
+    figure.legend(handles=handles, loc="outside lower center", ncols=3, frameon=False)
     return png_bytes(figure)
 
 

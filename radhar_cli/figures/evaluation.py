@@ -55,8 +55,8 @@ def curves_png(
     right.yaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
     right.yaxis.set_major_formatter(FormatStrFormatter("%g"))
     right.yaxis.set_minor_formatter(NullFormatter())
-    left.legend(loc="lower right", fontsize=8 if len(runs) < 4 else 6)
-    figure.suptitle("star: the epoch that is kept", fontsize=9)
+    left.legend(loc="lower right")
+    figure.suptitle("star: the epoch that is kept")
     return png_bytes(figure)
 
 
@@ -84,11 +84,11 @@ def confusion_png(counts: NDArray[np.int64], names: Sequence[str], title: str) -
             look: dict[str, Any] = {"color": "white" if share > 0.55 else "black", "fontsize": 7}
             text = f"{count}\n{100 * share:.1f} %"
             axes.text(column, row, text, ha="center", va="center", **look)
-    axes.set_xticks(range(len(names)), labels, rotation=40, ha="right", fontsize=8)
-    axes.set_yticks(range(len(names)), labels, fontsize=8)
+    axes.set_xticks(range(len(names)), labels, rotation=40, ha="right")
+    axes.set_yticks(range(len(names)), labels)
     axes.set(xlabel="predicted", ylabel="true")
     figure.colorbar(drawn, ax=axes, shrink=0.75, label="share of the true class (%)")
-    axes.set_title(title, fontsize=10)
+    axes.set_title(title)
     return png_bytes(figure)
 
 
@@ -124,14 +124,14 @@ def reliability_png(confidence: Float, accuracy: Float, count: Index, title: str
         linewidth=1,
     )
     above.set(ylabel="share that is right", ylim=(-0.02, 1.04))
-    above.legend(fontsize=8, loc="upper left")
+    above.legend(loc="upper left")
     edges = np.linspace(0, 1, len(count) + 1)
     below.bar(edges[:-1], count, width=np.diff(edges), align="edge", color="0.7", edgecolor="white")
     below.set(xlabel="probability of the predicted class", ylabel="images", xlim=(0, 1))
     below.yaxis.set_major_locator(MaxNLocator(3, integer=True))
     for axes in (above, below):
         axes.grid(alpha=0.3)
-    figure.suptitle(title, fontsize=9)
+    figure.suptitle(title)
     return png_bytes(figure)
 
 
@@ -145,8 +145,8 @@ def captioned_png(images: Sequence[Levels], captions: Sequence[str], title: str)
     for panel, image, caption in zip(panels, images, captions, strict=False):
         rgb = np.broadcast_to(image, (*image.shape[:2], 3))
         panel.imshow(rgb, interpolation="nearest", aspect="auto")
-        panel.set_title(caption, fontsize=7.5, loc="left")
-    figure.suptitle(title, fontsize=10)
+        panel.set_title(caption, loc="left")
+    figure.suptitle(title)
     return png_bytes(figure)
 
 
@@ -173,10 +173,10 @@ def embeddings_png(
             if len(of_class):
                 name = class_name.replace("_", " ")
                 axes.scatter(*of_class.T, s=12, color=colours(number % 20), label=name)
-        axes.set_title(space, fontsize=10)
+        axes.set_title(space)
         axes.set(xticks=[], yticks=[])
-    figure.legend(*drawn[0].get_legend_handles_labels(), loc="outside right center", fontsize=7)
-    figure.suptitle(title, fontsize=9)
+    figure.legend(*drawn[0].get_legend_handles_labels(), loc="outside right center")
+    figure.suptitle(title)
     return png_bytes(figure)
 
 
@@ -194,7 +194,7 @@ def filters_png(runs: Mapping[str, Sequence[Float]]) -> bytes:
     figure = page(1.9 * columns + 1.5, 1.95 * len(runs) + 0.9)
     panels = figure.subplots(len(runs), columns, squeeze=False)
     for number, (row, (name, filters)) in enumerate(zip(panels, runs.items(), strict=True)):
-        row[0].set_ylabel(name, fontsize=8)
+        row[0].set_ylabel(name)
         for panel in row[len(filters) :]:
             panel.set_axis_off()
         for layer, (panel, weight) in enumerate(zip(row, filters, strict=False), start=1):
@@ -210,14 +210,12 @@ def filters_png(runs: Mapping[str, Sequence[Float]]) -> bytes:
                 vmax=1,
             )
             over = f"Global Filter {layer}\n" if number == 0 else ""
-            panel.set_title(f"{over}{height} x {width}, largest {weight.max():.2g}", fontsize=8)
-            panel.tick_params(labelsize=7)
+            panel.set_title(f"{over}{height} x {width}, largest {weight.max():.2g}")
             panel.locator_params(nbins=5)
     bar = figure.colorbar(image, ax=panels, shrink=0.7, pad=0.01, aspect=40)
-    bar.set_label("mean |weight|, over the largest", fontsize=8)
-    bar.ax.tick_params(labelsize=7)
-    figure.supxlabel("time axis: frequency in cycles an image", fontsize=8)
-    figure.supylabel("Doppler axis: frequency in cycles an image", fontsize=8)
+    bar.set_label("mean |weight|, over the largest")
+    figure.supxlabel("time axis: frequency in cycles an image")
+    figure.supylabel("Doppler axis: frequency in cycles an image")
     return png_bytes(figure)
 
 
@@ -262,10 +260,10 @@ def robustness_png(lines: Mapping[str, Sequence[Point]]) -> bytes:
     if by_snr:
         axes.set_xlabel("SNR of the data (dB)")
     else:
-        axes.set_xticks(range(len(names)), names, rotation=25, ha="right", fontsize=8)
+        axes.set_xticks(range(len(names)), names, rotation=25, ha="right")
     axes.set(ylabel="accuracy (%), 95 % interval", ylim=(0, 102))
     axes.grid(alpha=0.3)
-    figure.legend(loc="outside right center", fontsize=8)
+    figure.legend(loc="outside right center")
     return png_bytes(figure)
 
 
@@ -275,9 +273,9 @@ def bars_png(names: Sequence[str], values: Sequence[float], quantity: str, title
     axes = figure.subplots()
     places = range(len(names))
     axes.barh(places, values, color="C0")
-    axes.set_yticks(places, [name.replace("_", " ") for name in names], fontsize=8)
+    axes.set_yticks(places, [name.replace("_", " ") for name in names])
     axes.invert_yaxis()
     axes.set_xlabel(quantity)
     axes.grid(axis="x", alpha=0.3)
-    axes.set_title(title, fontsize=9)
+    axes.set_title(title)
     return png_bytes(figure)

@@ -12,7 +12,18 @@ from matplotlib.image import AxesImage
 from radhar_cli.config.image import ImageConfig
 from radhar_cli.figures.maps_panel import title
 from radhar_cli.figures.page import page, write_figure
-from radhar_cli.figures.sides import Advance, Film, SideView, bones, colour_bar
+from radhar_cli.figures.sides import (
+    Advance,
+    Film,
+    SideView,
+    Surroundings,
+    bones,
+    colour_bar,
+    side_legend,
+)
+from radhar_cli.figures.stickman import near_limits, whole_limits
+from radhar_cli.figures.style import joint_colours
+from radhar_cli.motion.skeleton import JOINTS
 from radhar_cli.numerics.arrays import Float
 from radhar_cli.processing.frame_maps import FRAME_MAP_KINDS, SPEED, FrameMaps
 from radhar_cli.processing.points import Cloud
@@ -57,24 +68,35 @@ def draw_frames(content: BoardFrames, path: Path) -> None:
     maps = {
         name: map_.shown for name, map_ in content.products.items() if isinstance(map_, FrameMaps)
     }
-    cloud, middles = content.products.get("cloud"), content.board.middles
+    middles = content.board.middles
+    has_cloud = content.products.get("cloud") is not None
     chosen = np.unique(np.linspace(0, content.board.frames - 1, COLUMNS).round().astype(int))
-    rows = len(maps) + (cloud is not None)
-    figure = page(2.6 * max(chosen.size, 3) + 1, 2.7 * rows + 0.6, apart=0.06)
+    rows = len(maps) + has_cloud
+    figure = page(2.2 * max(chosen.size, 3) + 1, 2.4 * rows + 0.6, apart=0.06)
     grid = figure.subplots(rows, chosen.size, squeeze=False)
     for row, (name, frame_maps) in zip(grid, maps.items(), strict=False):
         for axes, frame in zip(row, chosen, strict=True):
             drawn = _draw_map(axes, frame_maps, frame, content)
-            axes.set_title(f"{FRAME_MAP_KINDS[name].title}, {middles[frame]:.2f} s", fontsize=8)
-        row[0].set_ylabel(label_of(frame_maps.rows), fontsize=7)
-        figure.colorbar(drawn, ax=list(row), pad=0.01, label="dB").ax.tick_params(labelsize=6)
-    if cloud is not None:
-        sides = [SideView(axes, "from the radar", *_limits(content)) for axes in grid[-1]]
+            axes.set_title("")
+        row[0].set_ylabel(f"{FRAME_MAP_KINDS[name].title}\n{label_of(frame_maps.rows)}")
+        figure.colorbar(drawn, ax=list(row), pad=0.01, label="dB below the peak")
+    if has_cloud:
+        near, _, fastest = _limits(content)
+        look, centres = (fastest, _colours(content), _surroundings(content)), _centres(content)
+        sides = [
+            SideView(axes, "from the radar", near + centres[frame][:, None], *look)
+            for axes, frame in zip(grid[-1], chosen, strict=True)
+        ]
         for side, axes, frame in zip(sides, grid[-1], chosen, strict=True):
             side.show(*_moment(content, frame))
-            axes.set_title(f"points, {middles[frame]:.2f} s", fontsize=8)
+            axes.set(
+                title="", ylabel="points from the radar\nup (m)" if axes is grid[-1][0] else ""
+            )
         colour_bar(figure, sides[0], ax=list(grid[-1]), pad=0.01)
-    figure.suptitle(content.title, fontsize=10)
+        side_legend(figure, _colours(content), loc="outside lower center", ncols=2)
+    for axes, frame in zip(grid[0], chosen, strict=True):
+        axes.set_title(f"{middles[frame]:.2f} s")
+    figure.suptitle(content.title)
     write_figure(figure, path, 90)
 
 
@@ -90,8 +112,7 @@ def _draw_map(axes: Axes, maps: FrameMaps, frame: int, content: BoardFrames) -> 
         axes.set_ylim(maps.limits or (0, min(content.farthest or np.inf, maps.rows.edges[1])))
     if maps.columns.name == "azimuth":  # left of the radar is left
         axes.invert_xaxis()
-    axes.set_xlabel(label_of(maps.columns), fontsize=7)
-    axes.tick_params(labelsize=6)
+    axes.set_xlabel(label_of(maps.columns))
     if maps.columns.values.size == 1:  # whose cell is as wide as the panel
         axes.set_xticks([])
     if maps.rows.values.size == 1:
@@ -109,10 +130,12 @@ def label_of(axis: Axis) -> str:
 
 def draw_cloud(content: BoardFrames, path: Path, advance: Advance) -> None:
     """Write cloud.gif: every frame's points over its skeleton, at true speed."""
-    film = Film(content.title, *_limits(content))
+    centres = _centres(content)
+    film = Film(content.title, *_limits(content), _colours(content), _surroundings(content))
 
     def show(frame: int) -> None:
-        film.show(*_moment(content, frame), f"t = {content.board.middles[frame]:.2f} s")
+        clock = f"t = {content.board.middles[frame]:.2f} s"
+        film.show(*_moment(content, frame), clock, centres[frame])
 
     film.write(path, show, content.board.frames, round(1000 * content.board.period_s), advance)
 
@@ -131,15 +154,34 @@ def _moment(content: BoardFrames, frame: int) -> tuple[Float, Float, Float]:
     return points[:, :3], points[:, 3], np.concatenate([np.empty((0, 2, 3)), *ends])
 
 
-def _limits(content: BoardFrames) -> tuple[Float, float]:
-    """Lowest and highest (ahead, left, up) to draw [3, 2], m, and the highest speed, m/s."""
-    points, joints = content.products["cloud"].points, _joints(content).reshape(-1, 3)
-    joints = joints[np.isfinite(joints).all(axis=1)]
-    places = joints if len(joints) else points[:, :3]
-    limits = np.array([(-1.0, -1.0, -1.0), (1.0, 1.0, 1.0)])
-    if len(places):
-        limits = np.nanpercentile(places, [1, 99], axis=0) + np.array([[-0.4], [0.4]])
-    return limits.T, speed_of_colours(points[:, 3])
+def _centres(content: BoardFrames) -> Float:
+    """Place [frame, 3] of a person who is alone, at no height, from which near views count, m."""
+    joints = _joints(content)
+    if joints.shape[1] != 1 or not np.isfinite(joints).all():
+        return np.zeros((content.board.frames, 3))
+    centres: Float = joints[:, 0].mean(axis=1) * (1, 1, 0)
+    return centres
+
+
+def _colours(content: BoardFrames) -> list[str]:
+    """Colours of the bones of each body; none where its joints are not known."""
+    return joint_colours(JOINTS) if len(content.parents) == len(JOINTS) else []
+
+
+def _surroundings(content: BoardFrames) -> Surroundings:
+    """Radar at the origin, and the floor below it where it does not look up or down."""
+    board = content.board
+    return Surroundings(floor=None if board.tilt else -board.position[2])
+
+
+def _limits(content: BoardFrames) -> tuple[Float, Float, float]:
+    """Limits [3, 2] of near views and of the one from above, m, and the highest speed, m/s."""
+    points, joints = content.products["cloud"].points, _joints(content)
+    near = (joints - _centres(content)[:, None, None]).reshape(-1, 3)
+    places, near = (p[np.isfinite(p).all(axis=1)] for p in (joints.reshape(-1, 3), near))
+    if not len(places):
+        places = near = points[:, :3] if len(points) else np.zeros((1, 3))
+    return near_limits(near), whole_limits(places, Surroundings()), speed_of_colours(points[:, 3])
 
 
 def speed_of_colours(speeds: Float) -> float:

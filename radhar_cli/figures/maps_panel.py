@@ -13,6 +13,7 @@ from matplotlib.image import AxesImage
 from radhar_cli.config.image import ImageConfig
 from radhar_cli.echo.bodies.motion_paths import point_delay
 from radhar_cli.figures.page import page, write_figure
+from radhar_cli.figures.style import SIGNED, decibels_in_words, describe_band, rounded
 from radhar_cli.numerics.arrays import Float
 from radhar_cli.processing.angle_time import ANGLE_TIME_KINDS
 from radhar_cli.processing.image import decibels
@@ -84,26 +85,24 @@ def draw_map(axes: Axes, name: str, page_content: MapsPage) -> AxesImage:
     else:
         cells = power_map.real
         largest = float(np.quantile(np.abs(cells), 1 - image.clipped)) or 1.0
-        look |= {"vmin": -largest, "vmax": largest}
+        look |= {"vmin": -largest, "vmax": largest, "cmap": SIGNED}
     cells = columns_that_show(cells)
     extent = (left, right, low / unit, high / unit)
     drawn = axes.imshow(cells, extent=extent, interpolation="antialiased", **look)
-    axes.set_title(f"{TITLES.get(name, name)}   {power_map.entropy:.2f} bit", fontsize=9)
+    axes.set_title(f"{TITLES.get(name, name)}, entropy {power_map.entropy:.1f} bit")
     axes.set_xlim(left, right)
-    axes.set_xlabel(f"{columns.name} ({columns.unit})", fontsize=8)
-    axes.tick_params(labelsize=7)
+    axes.set_xlabel(f"{columns.name} ({columns.unit})")
     if is_range:
-        axes.set_ylabel("range (m)", fontsize=8)
+        axes.set_ylabel("range (m)")
         axes.set_ylim(power_map.limits or (0, min(high, page_content.farthest)))
     elif not is_doppler:
-        axes.set_ylabel(f"{rows.name} ({rows.unit})", fontsize=8)
+        axes.set_ylabel(f"{rows.name} ({rows.unit})")
     else:
-        axes.set_ylabel("Doppler (kHz)" if unit > 1 else "Doppler (Hz)", fontsize=8)
+        axes.set_ylabel("Doppler (kHz)" if unit > 1 else "Doppler (Hz)")
         speed = SPEED_OF_LIGHT / (2 * page_content.f0) * unit
         scale = (partial(np.multiply, speed), partial(np.multiply, 1 / speed))
         second = axes.secondary_yaxis("right", functions=scale)
-        second.set_ylabel("approaching (m/s)", fontsize=8)
-        second.tick_params(labelsize=7)
+        second.set_ylabel("approaching (m/s)")
     if page_content.over is not None and columns.name == "time":
         page_content.over(axes, name, unit)
     return drawn
@@ -144,7 +143,7 @@ def alias_doppler(doppler: Float, prf: float) -> Float:
 
 
 def draw_maps(page_content: MapsPage, path: Path) -> None:
-    """Write maps.png: all maps on one page, with one colour bar."""
+    """Write maps.png: all maps on one page, with a colour bar of powers, and one of amplitudes."""
     names = [
         name for name in dict.fromkeys((*TITLES, *page_content.maps)) if name in page_content.maps
     ]
@@ -153,10 +152,13 @@ def draw_maps(page_content: MapsPage, path: Path) -> None:
     figure = page(max(11.0, 3.7 * columns + 1), 4.1 * rows, apart=0.12)
     panels = [figure.add_subplot(rows, columns, 1 + place) for place in range(len(names))]
     drawn = [draw_map(axes, name, page_content) for axes, name in zip(panels, names, strict=True)]
-    bar = figure.colorbar(drawn[0], ax=panels, shrink=0.8, pad=0.01)
-    powers = "power (dB below the largest of each map)"
-    bar.set_label("amplitude" if page_content.image.kind == "signed" else powers, fontsize=9)
-    figure.suptitle(page_content.title, fontsize=11)
+    is_signed = [page_content.maps[name].real is not None for name in names]
+    for signed in sorted(set(is_signed)):
+        label = "amplitude, clipped" if signed else "power (dB below the largest of each map)"
+        figure.colorbar(
+            drawn[is_signed.index(signed)], ax=panels, shrink=0.8, pad=0.01, label=label
+        )
+    figure.suptitle(page_content.title)
     write_figure(figure, path, 90)
 
 
@@ -170,21 +172,16 @@ def title(simulation: Simulation) -> str:
 def describe_scene(scene: Scene, waveform: Waveform) -> list[str]:
     """Describe a scene: activity, radar, surroundings, noise and seed, a few words each."""
     snr, figure = scene.config.snr_db, scene.config.receiver.noise_figure_db
-    noise = "no noise" if figure is None else f"noise figure {_write_number(nominal(figure), 1)} dB"
-    kind = scene.radar.kind
-    bandwidth = f" + {_write_number(waveform.bandwidth / 1e9, 4)} GHz"
-    band = bandwidth if scene.radar.has_range else " CW"
-    band += " impulses" if kind == "impulse" else ""
+    noise = "no noise" if figure is None else f"noise figure {decibels_in_words(nominal(figure))}"
+    band = f"{rounded(waveform.fc / 1e9, 5)} GHz CW"
+    if scene.radar.has_range:
+        band = describe_band(waveform.fc, waveform.fc + waveform.bandwidth)
+        band += " impulses" if scene.radar.kind == "impulse" else ""
     rooms = scene.config.room.faces is not None
     return [
         f"{scene.activity.label} {scene.activity.slug.replace('_', ' ')}",
-        f"{_write_number(waveform.fc / 1e9, 3)} GHz{band}, PRF {_write_number(waveform.prf, 1)} Hz",
+        f"{band}, PRF {rounded(waveform.prf)} Hz",
         "through a wall" if scene.config.wall else "in a room" if rooms else "free space",
-        noise if snr is None else f"SNR {_write_number(nominal(snr), 1)} dB",
+        noise if snr is None else f"SNR {decibels_in_words(nominal(snr))}",
         f"seed {scene.config.seed}",
     ]
-
-
-def _write_number(value: float, decimals: int) -> str:
-    """Write a number, which a law may have drawn, with so many decimals at most."""
-    return f"{round(value, decimals) + 0.0:.10g}"

@@ -5,17 +5,16 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TypeVar
 
-from matplotlib import rcParams
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.layout_engine import ConstrainedLayoutEngine
 
+from radhar_cli.figures import style  # noqa: F401  (letters of every figure)
 from radhar_cli.files.replacing import replacing
 
 T = TypeVar("T")
 DPI = 110
-rcParams["text.parse_math"] = False  # a class may be called $a$
 
 
 def page(width: float, height: float, apart: float = 0.04) -> Figure:
@@ -46,7 +45,7 @@ def page_of_rows(
     for row, (name, contents) in zip(panels, rows.items(), strict=True):
         for panel in row[len(contents) :]:
             panel.set_axis_off()
-        row[0].set_ylabel(name, fontsize=7)
+        row[0].set_ylabel(name)
         filled += zip(row, contents, strict=False)
     return figure, filled
 

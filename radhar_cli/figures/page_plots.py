@@ -13,6 +13,7 @@ from matplotlib.colors import to_hex
 from radhar_cli.config.image import ImageConfig
 from radhar_cli.figures.maps_panel import TITLES, alias_doppler
 from radhar_cli.figures.scene_view import MovingBody, SceneView
+from radhar_cli.figures.style import SIGNED
 from radhar_cli.numerics.arrays import Float, Index, Levels
 from radhar_cli.processing.frame_maps import FRAME_MAP_KINDS
 from radhar_cli.processing.map_kind import treatment_of
@@ -47,7 +48,7 @@ class LevelScale:
     def of(cls, image: ImageConfig, kind: str) -> "LevelScale":
         """Scale of maps that a page draws, by their kind (decibel, signed, cfar) and their peak."""
         low, high, unit = SCALES.get(kind, (-image.dynamic_range_db, 0.0, "dB re peak"))
-        return cls(low, high, unit, image.colour_map)
+        return cls(low, high, unit, SIGNED if kind == "signed" else image.colour_map)
 
     @classmethod
     def of_data_set(cls, image: ImageConfig, kind: str) -> "LevelScale":

@@ -1,26 +1,30 @@
 """Points over bones, seen from several sides, still or as a film."""
 
 from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, TypeAlias
 
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.collections import LineCollection
 from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
 from PIL import Image, ImageChops
 from PIL.GifImagePlugin import getdata, getheader
 
+from radhar_cli.figures.style import LEFT, RADAR, RIGHT, SPEEDS
 from radhar_cli.files.replacing import replacing
 from radhar_cli.numerics.arrays import Float
 
 Parents: TypeAlias = tuple[int | None, ...]
 Advance: TypeAlias = Callable[[int], object]
-# {view: (horizontal axis and its sign, vertical axis)} of points (ahead, left, up)
-VIEWS = {"from the radar": (1, -1.0, 2), "from the side": (0, 1.0, 2), "from above": (1, -1.0, 0)}
+# {view: (horizontal axis, vertical axis)} of points (ahead, left, up); left is always on the left
+VIEWS = {"from the radar": (1, 2), "from the side": (0, 2), "from above": (1, 0)}
 KNEES = (9, 11)
 UNCHANGED = 255  # colours of a palette, and the number that stands for a pixel as it was
-LABELS = {0: "ahead (m)", 1: "right (m)", 2: "up (m)"}
+LABELS = {0: "ahead (m)", 1: "left (m)", 2: "up (m)"}
 
 
 def bones(joints: Float, parents: Parents) -> Float:
@@ -37,10 +41,33 @@ def limbs(joints: Float, parents: Parents, hips: Float | None) -> Float:
     return ends
 
 
-class SideView:
-    """Points, coloured by their speed, over bones, from one side."""
+@dataclass(frozen=True)
+class Surroundings:
+    """Place of the radar and of what stands around people, in the axes (ahead, left, up), m.
 
-    def __init__(self, axes: Axes, name: str, limits: Float, fastest: float) -> None:
+    Attributes:
+        radar: place of the radar.
+        floor: height of the floor; None where it is not known.
+        outlines: corners [n, 2] (ahead, left) of walls and rooms, as seen from above.
+    """
+
+    radar: Sequence[float] = (0.0, 0.0, 0.0)
+    floor: float | None = None
+    outlines: Sequence[Float] = ()
+
+
+class SideView:
+    """Points, coloured by their speed, over bones, coloured by their side, from one side."""
+
+    def __init__(
+        self,
+        axes: Axes,
+        name: str,
+        limits: Float,
+        fastest: float,
+        colours: Sequence[str],
+        around: Surroundings,
+    ) -> None:
         """Prepare the axes.
 
         Args:
@@ -48,55 +75,115 @@ class SideView:
             name: view, one of VIEWS.
             limits: lowest and highest (ahead, left, up) [3, 2], m.
             fastest: speed at the ends of the colours, m/s.
+            colours: colours of the bones of each body, by joint.
+            around: what stands still.
         """
-        self.across, self.sign, self.up = VIEWS[name]
-        (self.bones,) = axes.plot([], [], color="0.6", linewidth=1.5)
-        look: dict[str, Any] = {"s": 14, "edgecolors": "0.3", "linewidths": 0.3, "zorder": 3}
-        look |= {"cmap": "coolwarm", "vmin": -fastest, "vmax": fastest}
+        self.across, self.up = VIEWS[name]
+        self.bones = LineCollection([], colors=colours or "0.6", linewidths=2.2)
+        axes.add_collection(self.bones, autolim=False)
+        look: dict[str, Any] = {"s": 16, "edgecolors": "0.3", "linewidths": 0.3, "zorder": 3}
+        look |= {"cmap": SPEEDS, "vmin": -fastest, "vmax": fastest}
         self.points = axes.scatter([], [], c=[], **look)
-        axes.set(xlim=sorted(self.sign * limits[self.across]), ylim=limits[self.up], aspect="equal")
-        axes.set_title(name, fontsize=9)
-        axes.set_xlabel(LABELS[self.across], fontsize=7)
-        axes.set_ylabel(LABELS[self.up], fontsize=7)
-        axes.tick_params(labelsize=6)
+        axes.set(xlim=limits[self.across], ylim=limits[self.up], aspect="equal", title=name)
+        axes.set_xlabel(LABELS[self.across])
+        axes.locator_params(nbins=6)
+        if name != "from the side":  # which has the heights of the view beside it
+            axes.set_ylabel(LABELS[self.up])
+        if self.across == 1:
+            axes.invert_xaxis()
+        _draw_surroundings(axes, name, around)
 
     def show(self, points: Float, speed: Float, ends: Float) -> None:
         """Show points [n, 3], their approaching speed [n], and bones [bone, 2, 3], in m and m/s."""
-        lines = np.insert(ends, 2, np.nan, axis=1).reshape(-1, 3)
-        self.bones.set_data(self.sign * lines[:, self.across], lines[:, self.up])
-        places = points[:, [self.across, self.up]] * (self.sign, 1)
-        self.points.set_offsets(places)
+        self.bones.set_segments(list(ends[..., [self.across, self.up]]))
+        self.points.set_offsets(points[:, [self.across, self.up]])
         self.points.set_array(speed)
+
+
+def _draw_surroundings(axes: Axes, name: str, around: Surroundings) -> None:
+    """Draw the floor, or from above the radar and the walls, and say where the radar is."""
+    if name == "from above":
+        for outline in around.outlines:
+            axes.plot(outline[:, 1], outline[:, 0], color="0.45", linewidth=1.2, scalex=False)
+        ahead, left, _ = around.radar
+        axes.plot(left, ahead, "D", color=RADAR, markersize=7, clip_on=False, zorder=4)
+        look: dict[str, Any] = {"color": RADAR, "textcoords": "offset points", "va": "center"}
+        axes.annotate("radar", (left, ahead), (8, 0), **look)
+        return
+    if around.floor is not None:
+        axes.axhline(around.floor, color="0.6", linewidth=1.5, zorder=0)
+    if name == "from the side":
+        corner: dict[str, Any] = {"color": RADAR, "va": "top", "transform": axes.transAxes}
+        axes.text(0.02, 0.97, "\N{LEFTWARDS ARROW} radar", **corner)
+
+
+def side_legend(figure: Figure, colours: Sequence[str], **where: Any) -> None:
+    """Add the meaning of the colours of bones to a figure; `where` is that of `Figure.legend`."""
+    lines = [
+        Line2D([], [], color=colour, linewidth=2.2, label=f"{side} of the body")
+        for side, colour in (("right", RIGHT), ("left", LEFT))
+        if colour in colours
+    ]
+    if lines:
+        figure.legend(handles=lines, frameon=False, **where)
 
 
 def colour_bar(figure: Figure, side: SideView, **where: Any) -> None:
     """Add the colour bar of the points' speed to a figure; `where` is that of `Figure.colorbar`."""
     bar = figure.colorbar(side.points, extend="both", **where)
-    bar.set_label("approaching (m/s); faster in the tips", fontsize=7)
-    bar.ax.tick_params(labelsize=6)
+    bar.set_label("approaching (m/s)")
 
 
 class Film:
     """Film of three sides and a clock, in the left `share` of a wide figure."""
 
-    def __init__(self, title: str, limits: Float, fastest: float, share: float = 1.0) -> None:
-        self.figure = Figure(figsize=(13, 4.6), dpi=80)
-        self.figure.suptitle(title, fontsize=9)
+    def __init__(
+        self,
+        title: str,
+        near: Float,
+        whole: Float,
+        fastest: float,
+        colours: Sequence[str],
+        around: Surroundings,
+        share: float = 1.0,
+    ) -> None:
+        """Prepare the figure.
+
+        Args:
+            title: line above.
+            near: limits [3, 2] of the views from the radar and from the side, m.
+            whole: limits [3, 2] of the view from above, m.
+            fastest: speed at the ends of the colours, m/s.
+            colours: colours of the bones of each body, by joint.
+            around: what stands still.
+            share: share of the width that is used.
+        """
+        self.figure = Figure(figsize=(13, 5.2), dpi=80)
+        self.figure.suptitle(title)
         self.sides = [
             SideView(
-                self.figure.add_axes((share * (0.06 + 0.31 * number), 0.14, share * 0.24, 0.7)),
-                *(name, limits, fastest),
+                self.figure.add_axes((share * left, 0.16, share * 0.265, 0.7)),
+                *(name, whole if name == "from above" else near, fastest, colours, around),
             )
-            for number, name in enumerate(VIEWS)
+            for left, name in zip((0.055, 0.345, 0.675), VIEWS, strict=True)
         ]
-        cax = self.figure.add_axes((share * 0.95, 0.15, 0.01, 0.66))
+        cax = self.figure.add_axes((share * 0.955, 0.17, 0.01, 0.66))
         colour_bar(self.figure, self.sides[0], cax=cax)
-        self.clock = self.figure.text(share / 2, 0.02, "", ha="center", fontsize=9)
+        side_legend(self.figure, colours, loc="lower left", ncols=3)
+        self.clock = self.figure.text(0.62 * share, 0.03, "", ha="center")
 
-    def show(self, points: Float, speed: Float, ends: Float, clock: str) -> None:
-        """Show a moment on every side (as `SideView.show`), and the text of the clock."""
-        for side in self.sides:
-            side.show(points, speed, ends)
+    def show(
+        self, points: Float, speed: Float, ends: Float, clock: str, centre: Float | None = None
+    ) -> None:
+        """Show a moment on every side (as `SideView.show`), and the text of the clock.
+
+        Args:
+            centre: place (ahead, left, up) from which the near views count, m; None for their
+                origin.
+        """
+        for side, name in zip(self.sides, VIEWS, strict=True):
+            away = np.zeros(3) if centre is None or name == "from above" else centre
+            side.show(points - away, speed, ends - away)
         self.clock.set_text(clock)
 
     def write(

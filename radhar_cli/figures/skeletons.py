@@ -1,16 +1,17 @@
 """Skeletons that a network estimated beside the true ones, and the error of every joint."""
 
 from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 
 from radhar_cli.figures.page import page, png_bytes
-from radhar_cli.figures.sides import Parents, bones
+from radhar_cli.figures.sides import LABELS, VIEWS, Parents, bones
+from radhar_cli.figures.style import RADAR
 from radhar_cli.numerics.arrays import Float
 
-# What lies across and which way: seen from the radar left is left; from the person's left.
-SIDES = {"from the radar": (1, -1), "from the side": (0, 1)}
-REACH = np.array([-1.15, 1.15])  # m
+SIDES = ("from the radar", "from the side")
+REACH = np.array([-1.05, 1.05])  # m
 
 
 def skeletons_png(pairs: Sequence[tuple[Float, Float, str]], parents: Parents, title: str) -> bytes:
@@ -24,20 +25,24 @@ def skeletons_png(pairs: Sequence[tuple[Float, Float, str]], parents: Parents, t
     Returns:
         The PNG file.
     """
-    figure = page(2.1 * len(pairs), 5.4)
+    figure = page(2.3 * len(pairs), 5.4)
     grid = figure.subplots(len(SIDES), len(pairs), squeeze=False)
-    for row, (side, (across, sign)) in zip(grid, SIDES.items(), strict=True):
+    for row, side in zip(grid, SIDES, strict=True):
+        across, up = VIEWS[side]
         for axes, (true, estimated, caption) in zip(row, pairs, strict=True):
             for joints, colour, name in ((true, "0.6", "true"), (estimated, "tab:red", "found")):
-                x, z = sign * joints[:, across], joints[:, 2]
                 for bone in bones(joints, parents):
-                    axes.plot(sign * bone[:, across], bone[:, 2], color=colour, linewidth=1.6)
-                axes.plot(x, z, "o", color=colour, markersize=2.5, label=name)
-            x, z = (middle + REACH for middle in (sign * true[:, across].mean(), true[:, 2].mean()))
-            axes.set(xlim=x, ylim=z, aspect="equal")
-            axes.set_title(caption, fontsize=6)
-            axes.tick_params(labelsize=5)
-        row[0].set_ylabel(f"{side}, m", fontsize=7)
-    grid[0, 0].legend(fontsize=6)
-    figure.suptitle(title, fontsize=9)
+                    axes.plot(bone[:, across], bone[:, up], color=colour, linewidth=1.8)
+                axes.plot(joints[:, across], joints[:, up], "o", color=colour, ms=3, label=name)
+            x, z = (true[:, axis].mean() + REACH for axis in (across, up))
+            axes.set(xlim=x[::-1] if across == 1 else x, ylim=z, aspect="equal")
+            axes.set_xlabel(LABELS[across])
+            axes.locator_params(nbins=5)
+            if side == SIDES[0]:
+                axes.set_title(caption)
+        row[0].set_ylabel(f"{side}\n{LABELS[up]}")
+    corner: dict[str, Any] = {"color": RADAR, "va": "top", "transform": grid[1, 0].transAxes}
+    grid[1, 0].text(0.03, 0.97, "\N{LEFTWARDS ARROW} radar", **corner)
+    figure.legend(*grid[0, 0].get_legend_handles_labels(), loc="outside lower center", ncols=2)
+    figure.suptitle(title)
     return png_bytes(figure)

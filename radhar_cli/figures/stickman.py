@@ -5,12 +5,15 @@ from pathlib import Path
 import numpy as np
 
 from radhar_cli.figures.maps_panel import draw_map, of_simulation, title
-from radhar_cli.figures.sides import Advance, Film, limbs
+from radhar_cli.figures.sides import Advance, Film, Surroundings, limbs
+from radhar_cli.figures.style import joint_colours
+from radhar_cli.numerics.arrays import Float
 from radhar_cli.scene.single.simulate import Simulation
 from radhar_cli.scene.single.truth import WHOLE
 
 FRAMES_PER_SECOND = 20
 SHOWN_BESIDE = ("stft", "fsst", "stft_compensated", "rtm")
+MARGIN_M = 0.15
 
 
 def frame_count(simulation: Simulation) -> int:
@@ -19,7 +22,7 @@ def frame_count(simulation: Simulation) -> int:
 
 
 def draw_stickman(simulation: Simulation, path: Path, advance: Advance) -> None:
-    """Write the animation; it follows a person who is alone, and else shows everybody's places.
+    """Write the animation; near views follow a person who is alone, and else show everybody.
 
     Args:
         simulation: the scene.
@@ -31,21 +34,18 @@ def draw_stickman(simulation: Simulation, path: Path, advance: Advance) -> None:
     people += [(other.truth, other.motion) for other in simulation.others]
     alone = len(people) == 1
     middle = np.nan_to_num(truth.positions.mean(axis=1)) * (alone, alone, 0)
-    tracks = [joint for person, _ in people for joint in person.positions.swapaxes(0, 1)]
-    bounds = [((p - middle).min(axis=0), (p - middle).max(axis=0)) for p in tracks]
-    bounds = bounds or [(np.zeros(3), np.zeros(3))]  # nobody is there
-    low = np.min([least for least, _ in bounds], axis=0) - 0.1
-    high = np.max([most for _, most in bounds], axis=0) + 0.1
-    centre = np.round((low + high) / 2) * (1, 1, 0)
-    low = np.minimum(low, centre - (1, 1, 0))
-    high = np.maximum(high, np.add(centre, (1, 1, 2)))
-    limits = np.stack([low, high], axis=1)
+    tracks = [person.positions for person, _ in people] or [np.zeros((1, 1, 3))]
+    around = surroundings_of(simulation)
+    whole = np.concatenate([_corners(p) for p in tracks])
+    near = _corners(tracks[0] - middle[:, None]) if alone else whole
     fastest = max(float(np.nan_to_num(np.abs(truth.radial_velocity)).max()), 0.1)
-    film = Film(title(simulation), limits, fastest, share=0.7)
+    colours = joint_colours(simulation.motion.names)
+    limits = near_limits(near), whole_limits(whole, around)
+    film = Film(title(simulation), *limits, fastest, colours, around, share=0.7)
     cursor = []
     map_names = [name for name in SHOWN_BESIDE if name in simulation.maps] or list(simulation.maps)
     if map_names:
-        axes = film.figure.add_axes((0.76, 0.14, 0.18, 0.7))
+        axes = film.figure.add_axes((0.78, 0.16, 0.16, 0.7))
         draw_map(axes, map_names[0], of_simulation(simulation, overlay=False))
         cursor.append(axes.axvline(0, color="white", linewidth=1))
 
@@ -56,15 +56,52 @@ def draw_stickman(simulation: Simulation, path: Path, advance: Advance) -> None:
         for person, motion in people:
             hips = None if person.hip_joints is None else person.hip_joints[pulse]
             lines.append(limbs(person.positions[pulse], motion.parents, hips))
-        centre_now, phase = middle[pulse], truth.phases[truth.phase_label[pulse]]
-        clock = f"t = {t:.2f} s"
-        clock += f", at x = {centre_now[0]:.1f} m, y = {centre_now[1]:.1f} m" if alone else ""
-        clock += "" if phase == WHOLE else f"   {phase}"
-        joints = truth.positions[pulse] - centre_now
-        ends = np.concatenate([np.empty((0, 2, 3)), *lines]) - centre_now
-        film.show(joints, -truth.radial_velocity[pulse], ends, clock)
+        phase = truth.phases[truth.phase_label[pulse]]
+        clock = f"t = {t:.2f} s" + ("" if phase == WHOLE else f"   {phase}")
+        ends = np.concatenate([np.empty((0, 2, 3)), *lines])
+        speeds = -truth.radial_velocity[pulse]
+        film.show(truth.positions[pulse], speeds, ends, clock, middle[pulse])
         for line in cursor:
             line.set_xdata([t, t])
 
     count, frame_ms = frame_count(simulation), 1000 // FRAMES_PER_SECOND
     film.write(path, show, count, frame_ms, advance, others=cursor)
+
+
+def surroundings_of(simulation: Simulation) -> Surroundings:
+    """Radar, floor, wall and room of a scene."""
+    antennas, wall = simulation.antennas, simulation.wall
+    room = simulation.scene.config.room.make_box()
+    boxes = [] if wall is None else [wall.bounds[:2]]
+    boxes += [] if room is None else [(room.x, room.y)]
+    corners = [
+        np.array([(x[0], y[0]), (x[1], y[0]), (x[1], y[1]), (x[0], y[1]), (x[0], y[0])])
+        for x, y in boxes
+    ]
+    radar = np.mean([antennas.tx, antennas.rx], axis=0)
+    return Surroundings(radar.tolist(), 0.0, corners)
+
+
+def _corners(places: Float) -> Float:
+    """Lowest and highest coordinates [2, 3] of places [..., 3]."""
+    flat = places.reshape(-1, 3)
+    return np.stack([np.nanmin(flat, axis=0), np.nanmax(flat, axis=0)])
+
+
+def near_limits(places: Float) -> Float:
+    """Limits [3, 2] (m) of places [n, 3]: a cube that stands where they are lowest."""
+    low, high = np.nanmin(places, axis=0) - MARGIN_M, np.nanmax(places, axis=0) + MARGIN_M
+    side = max(1.6, *(high - low))
+    middle = (low + high) / 2
+    start = np.array([*(middle[:2] - side / 2), low[2]])
+    return np.stack([start, start + side], axis=1)
+
+
+def whole_limits(places: Float, around: Surroundings) -> Float:
+    """Limits [3, 2] (m) of places [n, 3], of the radar and of walls, as seen from above."""
+    walls = [np.insert(outline, 2, 0.0, axis=1) for outline in around.outlines]
+    places = np.concatenate([places, [around.radar], *walls])
+    low, high = np.nanmin(places, axis=0) - 2 * MARGIN_M, np.nanmax(places, axis=0) + 2 * MARGIN_M
+    half = max(1.0, *((high - low)[:2] / 2))
+    centre = (low + high) / 2
+    return np.stack([centre - half, centre + half], axis=1)

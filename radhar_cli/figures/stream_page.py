@@ -3,20 +3,22 @@
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
+from typing import Any
 
 import numpy as np
-from matplotlib import colormaps
 from matplotlib.axes import Axes
+from matplotlib.colors import to_rgb
 from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 
 from radhar_cli.figures.page import page
+from radhar_cli.figures.style import SMALL, Colour, distinct_colours
 from radhar_cli.numerics.arrays import Index, Levels
 
 INCHES_A_SECOND, NARROWEST, WIDEST = 0.16, 7.0, 16.0
-MAP_HEIGHT, STRIP_HEIGHT = 1.7, 0.22  # inches
-NAMED_SHARE = 0.011  # of the width, that a letter of a name takes
-AT_REST = {"pause": "#e6e6e6", "transition": "#9a9a9a"}
+MAP_HEIGHT, STRIP_HEIGHT = 1.7, 0.24  # inches
+LETTER_INCH = 0.085  # width of a letter of a name
+AT_REST = {"pause": "#f0f0f0", "transition": "#bdbdbd"}
 
 
 @dataclass(frozen=True)
@@ -57,27 +59,34 @@ def draw_labelled_maps(
             aspect="auto",
             extent=labelled.extent,
         )
-        axes.set_title(labelled.title, fontsize=8, loc="left", pad=2)
-        axes.set_ylabel(labelled.rows, fontsize=7)
-        axes.tick_params(labelsize=6, length=2, labelbottom=False)
+        axes.set_title(labelled.title, loc="left", pad=2)
+        axes.set_ylabel(labelled.rows)
+        axes.tick_params(length=2, labelbottom=False)
         for strip, labels in labelled.strips.items():
             axes = next(panel)
-            _draw_strip(axes, labels, labelled.extent, names, colours)
-            axes.set_ylabel(strip, fontsize=7, rotation=0, ha="right", va="center")
-            axes.tick_params(labelsize=6, length=2, labelbottom=False)
+            _draw_strip(axes, labels, labelled.extent, names, colours, LETTER_INCH / width)
+            axes.set_ylabel(strip, rotation=0, ha="right", va="center")
+            axes.tick_params(length=2, labelbottom=False)
         axes.tick_params(labelbottom=True)
-    axes.set_xlabel(across, fontsize=7)
+    axes.set_xlabel(across)
     present = np.unique(np.concatenate([labels for m in maps for labels in m.strips.values()]))
-    handles = [Patch(color=colours[n], label=names[n]) for n in present.tolist() if n >= 0]
-    figure.legend(handles=handles, loc="outside right upper", fontsize=7, frameon=False)
+    handles = [
+        Patch(color=colours[n], label=_legend(n, names[n])) for n in present.tolist() if n >= 0
+    ]
+    figure.legend(handles=handles, loc="outside right upper", frameon=False)
     return figure
 
 
-def label_colours(names: Sequence[str]) -> list[str | tuple[float, ...]]:
-    """Colour of each label; pauses and transitions are grey."""
-    table = colormaps["tab10" if len(names) <= 12 else "tab20"]
-    numbers = {name: n for n, name in enumerate(name for name in names if name not in AT_REST)}
-    return [AT_REST.get(name) or table(numbers[name] % table.N) for name in names]
+def label_colours(names: Sequence[str]) -> list[Colour]:
+    """Colour of each label; pauses and transitions alone are grey."""
+    colours = iter(distinct_colours(len(names)))
+    return [AT_REST.get(name) or next(colours) for name in names]
+
+
+def _legend(number: int, name: str) -> str:
+    """Name of a label with its number, which stands in strips that are too short for the name."""
+    words = name.replace("_", " ")
+    return words if name in AT_REST else f"{number + 1}  {words}"
 
 
 def _draw_strip(
@@ -85,9 +94,13 @@ def _draw_strip(
     labels: Index,
     extent: Sequence[float],
     names: Sequence[str],
-    colours: Sequence[str | tuple[float, ...]],
+    colours: Sequence[Colour],
+    letter: float,
 ) -> None:
-    """Draw labels [W] of columns as bars, named where there is room."""
+    """Draw labels [W] of columns as bars, with their names, or numbers, where there is room.
+
+    A letter takes the share `letter` of the width.
+    """
     left, right = extent[:2]
     cuts = [0, *(np.flatnonzero(np.diff(labels)) + 1).tolist(), labels.size]
     step = (right - left) / labels.size
@@ -97,9 +110,12 @@ def _draw_strip(
             continue
         axes.axvspan(left + start * step, left + stop * step, color=colours[label], lw=0)
         name = names[label].replace("_", " ")
-        if name not in AT_REST and (stop - start) / labels.size > NAMED_SHARE * len(name):
-            middle = left + 0.5 * (start + stop) * step
-            axes.text(middle, 0.5, name, fontsize=6, ha="center", va="center")
+        room, middle = (stop - start) / labels.size / letter, left + 0.5 * (start + stop) * step
+        words = name if room > len(name) else str(label + 1)
+        if name not in AT_REST and room > len(words):
+            dark = sum(to_rgb(colours[label])) < 1.5
+            look: dict[str, Any] = {"ha": "center", "va": "center", "fontsize": SMALL}
+            axes.text(middle, 0.48, words, color="white" if dark else "black", **look)
     axes.set_xlim(left, right)
     axes.set_ylim(0, 1)
     axes.set_yticks([])

@@ -35,11 +35,11 @@ def pictures_png(
     for panel, picture in panels:
         look: dict[str, Any] = {"cmap": "viridis", "vmin": 0, "vmax": 255, "aspect": "auto"}
         panel.imshow(picture.levels, extent=picture.extent, interpolation="nearest", **look)
-        panel.set_title(picture.words, fontsize=7)
+        panel.set_title(picture.words)
         panel.locator_params(nbins=4)
-        panel.tick_params(labelsize=6, length=2)
+        panel.tick_params(length=2)
         panel.label_outer()
-    figure.supxlabel(across, fontsize=8)
-    figure.supylabel(upwards, fontsize=8)
-    figure.suptitle(title, fontsize=10)
+    figure.supxlabel(across)
+    figure.supylabel(upwards)
+    figure.suptitle(title)
     return png_bytes(figure)

@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from math import sqrt
 from typing import Any
 
 import numpy as np
@@ -26,6 +27,23 @@ class Calibration:
         """Expected calibration error: sum of share |accuracy - confidence| (Guo et al., 2017)."""
         gaps = np.nan_to_num(np.abs(self.accuracy - self.confidence)) * self.count
         return float(gaps.sum() / max(1, self.count.sum()))
+
+    @property
+    def in_words(self) -> str:
+        """Mean probability beside the share that is right, as a sentence."""
+        total = max(1, int(self.count.sum()))
+        sure, right = (
+            float(np.nansum(column * self.count) / total)
+            for column in (self.confidence, self.accuracy)
+        )
+        chance = max(0.02, 2 * sqrt(right * (1 - right) / total))
+        verdict = "too sure of itself" if sure > right else "right more often than it says"
+        if abs(sure - right) <= chance:
+            verdict = "as often right as it says"
+        return (
+            f"The network gives its predictions {100 * sure:.0f} % on average, and "
+            f"{100 * right:.0f} % of them are right: it is {verdict}"
+        )
 
 
 def calibration(truth: Index, probabilities: Float) -> Calibration:

@@ -18,7 +18,7 @@ from radhar_cli.dataset.split import TEST
 from radhar_cli.errors import FolderError
 from radhar_cli.figures.class_shares import ShareBar, class_shares_png
 from radhar_cli.figures.evaluation import Point, curves_png, filters_png, robustness_png
-from radhar_cli.figures.report.parts import Details, ReportFigure, ReportTable
+from radhar_cli.figures.report.parts import Details, ReportFigure, ReportTable, Sentences
 from radhar_cli.figures.report.report import Report
 from radhar_cli.learning.evaluated_run import (
     EvalSet,
@@ -38,6 +38,11 @@ from radhar_cli.learning.tasks.predictions import EvalOptions
 from radhar_cli.learning.tasks.task import Evaluation
 from radhar_cli.processes.progress import Progress
 
+INTERVALS = (
+    "Intervals of 95 % are Wilson's, of as many samples as vary like whole persons or recordings "
+    "drawn anew where these are known, else of single samples."
+)
+TESTED = ("network", "trained on", "tested on", "result")
 NETWORK = ("model", "parameters", "multiply_adds", "best_epoch")
 
 
@@ -73,20 +78,22 @@ def evaluate(
     evaluation.say_notes(list(eval_sets.values()))
     is_single = len(eval_sets) == 1
     for run in open_runs:
-        evaluation.say(f"{run.name}: {run.metadata.model}, {run.metadata.outputs_in_words}")
+        progress.say(f"{run.name}: {run.metadata.model}, {run.metadata.outputs_in_words}")
         for data_name in named_data:
             stem = "" if is_single else f"_{run.name}__{data_name}"
             evaluation.add(run, data_name, eval_sets[run.name, data_name], stem)
         evaluation.add_speed(run, eval_sets[run.name, next(iter(named_data))])
-    _list_networks(report)
+    report.sections[0].parts.insert(0, _tested_table(evaluation.tested))
     _add_curves(report, open_runs, evaluation.accuracies)
+    _list_networks(report)
     if options.filters:
         _show_filters(report, open_runs)
     for data_name, path in named_data.items():
         _add_audit(report, data_name, path, single=len(named_data) == 1)
-    report.section("How they were trained")
+    report.section("How it was trained and measured")
     for run in open_runs:
-        report.add(Details(run.name, _training_as_json(run.metadata)))
+        report.add(Details(f"Training of {run.name}", _training_as_json(run.metadata)))
+    report.add(Sentences([INTERVALS]))
     return report
 
 
@@ -116,11 +123,7 @@ def _begin_report(
             "runs": {},
         },
         title=f"{', '.join(runs)} on {', '.join(data)}",
-        about=(
-            f"radhar eval {build_version()}; on {device.type}, threads: {threads}, float32. "
-            "Intervals of 95 % are Wilson's, of as many samples as vary like whole persons or "
-            "recordings drawn anew where these are known, else of single samples."
-        ),
+        about=f"radhar eval {build_version()}; on {device.type}, threads: {threads}, float32.",
         formats=("html",),
         lists_files=True,
     )
@@ -136,6 +139,7 @@ class _Evaluation:
     progress: Progress
     # {run: its accuracy on each data set}, of classifiers
     accuracies: dict[str, list[Point]] = field(default_factory=dict)
+    tested: list[tuple[str, ...]] = field(default_factory=list)  # as in TESTED, a row a result
 
     def say(self, line: str) -> None:
         """Show a line, and add it to the top of the page."""
@@ -166,7 +170,9 @@ class _Evaluation:
         runs = self.report.numbers["runs"]
         runs.setdefault(run.name, _describe_run(run) | {"data": {}})["data"][data] = numbers
         task = run.metadata.task
-        self.say(f"  {data}, {eval_set.split}: {task.summarise(numbers)}")
+        summary = task.summarise(numbers)
+        self.progress.say(f"  {data}, {eval_set.split}: {summary}")
+        self.tested.append((*_describe_test(run, data, eval_set, numbers["images"]), summary))
         if isinstance(task, Classifier):
             interval = numbers["accuracy_95"] or (nan, nan)
             point = Point(data, eval_set.images.snr_db, numbers["accuracy"], *interval)
@@ -197,8 +203,10 @@ class _Evaluation:
         evaluation = Evaluation(
             self.report, stem, title, predictions, task.groups(images, rows), options, features
         )
+        numbers = task.report(evaluation)
+        self.report.sections[-1].parts.sort(key=lambda part: not isinstance(part, ReportFigure))
         return {
-            **task.report(evaluation),
+            **numbers,
             **counts,
             "main_number": task.main_number,
             "split": eval_set.split,
@@ -229,6 +237,28 @@ def _chosen_by(run: Run, eval_set: EvalSet, numbers: Mapping[str, Any]) -> str:
     return f"{part} chose the epoch, {best}, so that this is optimistic; {cure}"
 
 
+def _describe_test(run: Run, data: str, eval_set: EvalSet, count: int) -> tuple[str, str, str]:
+    """Network, what it was trained on and what it is tested on, in words."""
+    metadata, images = run.metadata, eval_set.images
+    unit = "images" if images.is_pictures else "sequences"
+    of_map = "" if images.map is None else f" of {images.map}"
+    snr = "" if images.snr_db is None else f", SNR {images.snr_db:g} dB"
+    part = "all" if eval_set.split == "all" else f"the {eval_set.split} part"
+    return (
+        f"{run.name}: {metadata.model}, {metadata.outputs_in_words}",
+        f"{metadata.data['train']} {unit} of {metadata.data['path']}",
+        f"{part} of {data}: {count} {unit}{of_map}{snr}",
+    )
+
+
+def _tested_table(tested: Sequence[Sequence[str]]) -> ReportTable:
+    """Table of what was tested with what; of a single result a line for each fact."""
+    if len(tested) == 1:
+        header, *rows = zip(TESTED, tested[0], strict=True)
+        return ReportTable(header, rows)
+    return ReportTable(TESTED, tested)
+
+
 def _list_networks(report: Report) -> None:
     """Add the table of networks, and its file."""
     run_numbers = report.numbers["runs"].items()
@@ -242,15 +272,19 @@ def _list_networks(report: Report) -> None:
     _show_networks(report, rows)
 
 
-def _show_networks(report: Report, rows: Sequence[Sequence[object]]) -> None:
+def _show_networks(report: Report, rows: Sequence[Sequence[Any]]) -> None:
     """Add the table of networks with a column for each run, in units that people read."""
     units = (
-        *("network", "parameters", "multiply-adds of an image", "best epoch", "loading, s"),
+        *("network", "parameters", "million multiply-adds an image", "best epoch", "loading, s"),
         *("an image, s", "loading and an image, s", "images of a batch", "images/s in batches"),
         "images/s in batches, loading included",
     )
     head = ["", *(row[0] for row in rows)]
-    columns = zip(*(row[1:] for row in rows), strict=True)
+    in_millions = (
+        [name, parameters, None if adds is None else round(adds / 1e6, 2), *others]
+        for _, name, parameters, adds, *others in rows
+    )
+    columns = zip(*in_millions, strict=True)
     lines = [[unit, *column] for unit, column in zip(units, columns, strict=True)]
     report.add(ReportTable(head, lines, "Size and speed"))
 

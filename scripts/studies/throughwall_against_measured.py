@@ -106,7 +106,7 @@ def main() -> None:
         shown["measured"] = right
     matplotlib.use("Agg")
     figure, panels = plt.subplots(
-        1, len(shown), figsize=(3 * len(shown), 3), sharey=True, layout="constrained"
+        1, len(shown), figsize=(2.2 * len(shown), 2.6), sharey=True, layout="constrained"
     )
     extent = (0, SECONDS, NEAREST_M, NEAREST_M + REACH_M)
     for panel, (title, image) in zip(panels, shown.items(), strict=True):
@@ -116,7 +116,7 @@ def main() -> None:
         panel.set(title=title, xlabel="time (s)")
     panels[0].set_ylabel("range (m)")
     figure.colorbar(drawn, ax=panels, label="amplitude over the largest")
-    figure.savefig(given.out / "beside.png", dpi=70)
+    figure.savefig(given.out / "beside.png", dpi=110)
 
 
 if __name__ == "__main__":

@@ -59,9 +59,11 @@ def test_maps_are_drawn(activity, overrides, joint, maps, tmp_path):
     [
         (["snr_db={uniform: [15.01, 15.04]}"], "SNR 15 dB"),
         (["snr_db=-0.01"], "SNR 0 dB"),
-        (["radar.carrier_hz=24.125e9"], "24.125 GHz + "),
-        (["radar.prf_hz={uniform: [1333.31, 1333.33]}"], "PRF 1333.3 Hz"),
-        (["radar.bandwidth_hz=767.5e6"], "+ 0.7675 GHz"),
+        (["snr_db=25.3"], "SNR 25 dB"),
+        (["snr_db=2.53"], "SNR 2.5 dB"),
+        (["radar.carrier_hz=77.42e9", "radar.bandwidth_hz=2.89811e9"], "77.4 to 80.3 GHz, "),
+        (["radar.prf_hz={uniform: [1333.31, 1333.33]}"], "PRF 1330 Hz"),
+        (["radar.bandwidth_hz=76.75e6"], "77.000 to 77.077 GHz"),
     ],
 )
 def test_title_rounds_what_laws_have_drawn(overrides, words):

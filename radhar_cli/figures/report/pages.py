@@ -16,6 +16,7 @@ from radhar_cli.figures.report.parts import (
 )
 from radhar_cli.files.table_text import markdown_table
 
+DIGITS = 3  # of a number in a table for people
 NUMBER = re.compile(r"[-+]?[\d\u202f]*\.?\d+(e[-+]?\d+)?( %)?")  # of a cell
 STYLE = """
 :root { --line: #d8dee4; --soft: #57606a; }
@@ -26,6 +27,7 @@ h2 { border-bottom: 1px solid var(--line); padding-bottom: .25rem; margin-top: 2
 h3 { margin: 1.4rem 0 .3rem; font-size: 1rem; }
 .scroll { overflow-x: auto; }
 table { border-collapse: collapse; margin: .4rem 0 1.2rem; font-variant-numeric: tabular-nums; }
+@media (max-width: 40rem) { body { margin: 1rem auto; } th, td { padding: .2rem .35rem; } }
 th, td { padding: .22rem .7rem; border-bottom: 1px solid var(--line); text-align: left;
   vertical-align: top; }
 th { color: var(--soft); font-weight: 600; }
@@ -110,7 +112,7 @@ def _html(parts: Iterable[Part]) -> Iterator[str]:
 
 def _html_table(table: ReportTable) -> str:
     """HTML of a table; columns of numbers lie on the right."""
-    rows = [[number_text(cell) for cell in row] for row in table.rows]
+    rows = [[number_text(cell, DIGITS) for cell in row] for row in table.rows]
     is_number = [_is_of_numbers(column) for column in zip(*rows, strict=True)]
     is_number += [False] * (len(table.header) - len(is_number))
 

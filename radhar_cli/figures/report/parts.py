@@ -59,10 +59,14 @@ class ReportSection:
     parts: list[Part] = field(default_factory=list)
 
 
-def number_text(value: object) -> str:
-    """Text of a cell: a number as a person reads it, with narrow spaces; nothing for None."""
+def number_text(value: object, digits: int = 4) -> str:
+    """Text of a cell: a number as a person reads it, with narrow spaces; nothing for None.
+
+    Args:
+        digits: significant digits of a number that is not whole.
+    """
     if isinstance(value, bool) or not isinstance(value, (int, float)):
         return "" if value is None else str(value)
     if isfinite(value) and value == int(value):
         return f"{int(value):,}".replace(",", "\u202f")
-    return f"{value:.4g}"
+    return f"{value:.{digits}g}"

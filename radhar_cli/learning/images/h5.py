@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from radhar_cli.config.data_set import MeasuredConfig
-from radhar_cli.dataset.layout import Rows
+from radhar_cli.dataset.layout import Rows, row_axis
 from radhar_cli.dataset.png import colour_table
 from radhar_cli.dataset.reading import Dataset, open_dataset
 from radhar_cli.dataset.recorded import windows
@@ -141,8 +141,17 @@ def _image_set(
         pixels=pixels,
         frame_classes=data.frame_classes,
         column_s=None if stream is None else stream.column_s,
+        row_axis=_axis_of_rows(data, name),
         snr_db=float(snr_db) if isinstance(snr_db, (int, float)) else None,
     )
+
+
+def _axis_of_rows(data: Dataset, name: str) -> tuple[str, float, float]:
+    """Quantity and edges of the rows of streams; shares of the height of what has no edges."""
+    edges = data.extent(name) if name in data.frame_label else None
+    if edges is None:
+        return "share of the rows", 0.0, 1.0
+    return "{} ({})".format(*row_axis(name)), edges[2], edges[3]
 
 
 def _activities(data: Dataset) -> Objects | None:

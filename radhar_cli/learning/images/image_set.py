@@ -97,6 +97,8 @@ class ImageSet:
     joints: tuple[str, ...] = ()  # names of what `pixels.joints` reads
     frame_classes: tuple[str, ...] = ()  # names of the labels of columns, of streams
     column_s: float | None = None  # time from one column to the next, of streams
+    # quantity and unit of the rows of streams, and the edges of the lowest and the highest
+    row_axis: tuple[str, float, float] = ("share of the rows", 0.0, 1.0)
     colours: str | None = None  # colour map of RGB pictures, where it is known
     notes: tuple[str, ...] = ()  # what was done to make the images fit, to be said
 

@@ -112,8 +112,8 @@ class _ClassFigures:
             )
         error = f"calibration error {100 * bins.error:.1f} %"
         caption = (
-            f"Reliability, {title}: how often a prediction is right, by the probability that the "
-            f"network gives it; {error} (mean distance from the line).{remark}"
+            f"Calibration: how often a prediction is right, by the probability that the network "
+            f"gives it. {bins.in_words}; {error} (mean distance from the line).{remark}"
         )
         png = reliability_png(bins.confidence, bins.accuracy, bins.count, f"{title}\n{error}")
         self.evaluation.figure("reliability", caption, png)
@@ -142,9 +142,8 @@ class _ClassFigures:
             table.append((images.path_of(row), true, winner, probability))
         png = captioned_png(pictures, captions, f"{heading}: {self.evaluation.title}")
         self.evaluation.figure("hardest", f"{heading}, {self.evaluation.title}.", png)
-        self.evaluation.table(
-            "hardest", ("image", "true", "predicted", "probability"), table, heading
-        )
+        header = ("image", "true", "predicted", "probability")
+        self.evaluation.table("hardest", header, table, heading)
 
     def _select_hardest(self) -> tuple[str, Index]:
         """Heading, and places in the predictions, of the images of `draw_hardest`."""

@@ -132,12 +132,13 @@ def _draw_streams(
 ) -> None:
     """Add the first streams with true labels and predicted ones below."""
     images = predictions.images
+    quantity, *edges = images.row_axis
     maps = [
         LabelledMap(
             stream.name,
             _pixels_of(predictions, stream),
-            (0.0, stream.true.size * (images.column_s or 1.0), 0.0, float(images.size[0])),
-            "pixel row",
+            (0.0, stream.true.size * (images.column_s or 1.0), *edges),
+            quantity,
             {"true": stream.true, "found": stream.predicted},
         )
         for stream in streams[:DRAWN]

@@ -16,7 +16,7 @@ from radhar_cli.numerics.arrays import Bool, Float
 
 AXES = ("ahead", "left", "up")
 DISTANCE = "mean distance between found and true joint (cm)"
-DRAWN = 6  # skeletons of the figure
+DRAWN = 5  # skeletons of the figure
 
 
 def report_skeletons(evaluation: Evaluation) -> dict[str, Any]:
@@ -46,11 +46,11 @@ def report_skeletons(evaluation: Evaluation) -> dict[str, Any]:
     by_axis = 100 * np.abs(deviation).mean(0)  # [joint, 3]
     header = ("joint", *(f"{axis}_cm" for axis in AXES), "mpjpe_cm")
     errors = list(zip(names, by_axis.tolist(), by_joint.tolist(), strict=True))
-    table = [(name, *map("{:.2f}".format, (*axes, error))) for name, axes, error in errors]
+    table = [(name, *(round(cm, 2) for cm in (*axes, error))) for name, axes, error in errors]
     evaluation.table("joints", header, table, "Joint by joint, mean errors")
     png = bars_png(names, by_joint.tolist(), DISTANCE, evaluation.title)
     evaluation.figure("joints", f"Error of each joint, mean distance, {evaluation.title}.", png)
-    _draw_skeletons(evaluation, predictions, true, is_known)
+    _draw_skeletons(evaluation, true, is_known, 100 * distance.mean(1))
     return {
         "images": int(rows.size),
         "frames": int(is_known.sum()),
@@ -96,17 +96,28 @@ def _errors_by_class(
     return numbers
 
 
-def _draw_skeletons(
-    evaluation: Evaluation, predictions: Predictions, true: Float, is_known: Bool
-) -> None:
-    """Add found beside true skeletons [N, T, joint, 3] of some frames, evenly spread."""
+def _draw_skeletons(evaluation: Evaluation, true: Float, is_known: Bool, errors_cm: Float) -> None:
+    """Add found beside true skeletons of frames from the smallest to the largest error.
+
+    Args:
+        true: true skeletons [N, T, joint, 3], m.
+        is_known: [N, T], whether a frame has one.
+        errors_cm: mean error of each known frame [frame], cm.
+    """
+    predictions, title = evaluation.predictions, evaluation.title
     images, predicted = predictions.images, predictions.values
-    frames = np.argwhere(is_known)[np.linspace(0, is_known.sum() - 1, DRAWN).astype(int)]
+    places = np.argsort(errors_cm, kind="stable")
+    chosen = places[np.linspace(0, places.size - 1, DRAWN).astype(int)]
     pairs = []
-    for row, frame in frames.tolist():
-        name = f"{images.samples.name[predictions.rows[row]]}, frame {frame}"
-        pairs.append((true[row, frame], predicted[row, frame], name))
+    for (row, frame), error in zip(
+        np.argwhere(is_known)[chosen].tolist(), errors_cm[chosen].tolist(), strict=True
+    ):
+        name = images.samples.name[predictions.rows[row]]
+        words = f"{name}\nframe {frame}: {error:.0f} cm"
+        pairs.append((true[row, frame], predicted[row, frame], words))
     parents = PARENTS if predictions.names == JOINTS else ()
-    title = evaluation.title
-    caption = f"True skeletons (grey) and those found (red), from ahead and from the side, {title}."
+    caption = (
+        "True skeletons (grey) and those found (red), from the radar and from the side: from the "
+        f"frame with the smallest mean error to the one with the largest, {title}."
+    )
     evaluation.figure("skeletons", caption, skeletons_png(pairs, parents, title))

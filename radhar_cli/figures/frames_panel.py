@@ -15,8 +15,8 @@ from radhar_cli.figures.page import page, write_figure
 from radhar_cli.figures.sides import (
     Advance,
     Film,
+    Backdrop,
     SideView,
-    Surroundings,
     bones,
     colour_bar,
     side_legend,
@@ -82,7 +82,7 @@ def draw_frames(content: BoardFrames, path: Path) -> None:
         figure.colorbar(drawn, ax=list(row), pad=0.01, label="dB below the peak")
     if has_cloud:
         near, _, fastest = _limits(content)
-        look, centres = (fastest, _colours(content), _surroundings(content)), _centres(content)
+        look, centres = (fastest, _colours(content), _backdrop(content)), _centres(content)
         sides = [
             SideView(axes, "from the radar", near + centres[frame][:, None], *look)
             for axes, frame in zip(grid[-1], chosen, strict=True)
@@ -131,7 +131,7 @@ def label_of(axis: Axis) -> str:
 def draw_cloud(content: BoardFrames, path: Path, advance: Advance) -> None:
     """Write cloud.gif: every frame's points over its skeleton, at true speed."""
     centres = _centres(content)
-    film = Film(content.title, *_limits(content), _colours(content), _surroundings(content))
+    film = Film(content.title, *_limits(content), _colours(content), _backdrop(content))
 
     def show(frame: int) -> None:
         clock = f"t = {content.board.middles[frame]:.2f} s"
@@ -168,10 +168,10 @@ def _colours(content: BoardFrames) -> list[str]:
     return joint_colours(JOINTS) if len(content.parents) == len(JOINTS) else []
 
 
-def _surroundings(content: BoardFrames) -> Surroundings:
+def _backdrop(content: BoardFrames) -> Backdrop:
     """Radar at the origin, and the floor below it where it does not look up or down."""
     board = content.board
-    return Surroundings(floor=None if board.tilt else -board.position[2])
+    return Backdrop(floor=None if board.tilt else -board.position[2])
 
 
 def _limits(content: BoardFrames) -> tuple[Float, Float, float]:
@@ -181,7 +181,7 @@ def _limits(content: BoardFrames) -> tuple[Float, Float, float]:
     places, near = (p[np.isfinite(p).all(axis=1)] for p in (joints.reshape(-1, 3), near))
     if not len(places):
         places = near = points[:, :3] if len(points) else np.zeros((1, 3))
-    return near_limits(near), whole_limits(places, Surroundings()), speed_of_colours(points[:, 3])
+    return near_limits(near), whole_limits(places, Backdrop()), speed_of_colours(points[:, 3])
 
 
 def speed_of_colours(speeds: Float) -> float:

@@ -14,8 +14,8 @@ from radhar_cli.figures.maps_panel import title
 from radhar_cli.figures.page import page, write_figure
 from radhar_cli.figures.sides import (
     Advance,
-    Film,
     Backdrop,
+    Film,
     SideView,
     bones,
     colour_bar,

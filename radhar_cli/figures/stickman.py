@@ -5,7 +5,7 @@ from pathlib import Path
 import numpy as np
 
 from radhar_cli.figures.maps_panel import draw_map, of_simulation, title
-from radhar_cli.figures.sides import Advance, Film, Backdrop, limbs
+from radhar_cli.figures.sides import Advance, Backdrop, Film, limbs
 from radhar_cli.figures.style import joint_colours
 from radhar_cli.numerics.arrays import Float
 from radhar_cli.scene.single.simulate import Simulation

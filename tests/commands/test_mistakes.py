@@ -83,6 +83,7 @@ def place(small_set, tmp_path_factory):
     return folder
 
 
+@pytest.mark.every(2)
 @pytest.mark.parametrize("words", MISTAKES)
 def test_a_mistake_is_one_line(words, place, monkeypatch):
     monkeypatch.chdir(place)

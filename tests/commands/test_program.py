@@ -77,6 +77,7 @@ def test_dry_run_refuses_what_the_build_would_refuse(tmp_path):
     assert any("of 9 recordings: a scatterer leaves" in one for one in found["warnings"])
 
 
+@pytest.mark.every(4)
 @pytest.mark.parametrize("path", [*CONFIGS, *TRAINING], ids=lambda p: f"{p.parent.name}-{p.stem}")
 def test_shipped_configs_resolve_and_show_round_trips(path, tmp_path):
     kind = ["--train"] if path in TRAINING else []
@@ -112,6 +113,7 @@ IMAGES = {*images_of_the_quickstart()}
 HELPS = {" ".join(words): known for words, known in every_command(get_command(program())) if words}
 
 
+@pytest.mark.every(3)
 @pytest.mark.parametrize("name", HELPS)
 def test_the_examples_of_a_help_can_be_run(name):
     """Without a clone: they name configs that radhar comes with, which take their --set."""

@@ -131,6 +131,7 @@ def test_every_shipped_config_is_a_preset() -> None:
     }
 
 
+@pytest.mark.every(4)
 @pytest.mark.parametrize("name", PRESETS)
 def test_a_written_preset_needs_no_other_file(tmp_path: Path, name: str) -> None:
     """It says in a folder of its own what the shipped config says in its own."""

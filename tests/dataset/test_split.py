@@ -163,6 +163,7 @@ SHIPPED = [
 ]
 
 
+@pytest.mark.every(4)
 @pytest.mark.parametrize("path", SHIPPED, ids=lambda path: f"{path.parent.name}/{path.stem}")
 def test_a_shipped_config_has_a_part_that_chooses_no_epoch(path):
     """Of every class, and of four persons or more where persons are split."""

@@ -167,6 +167,7 @@ def correlation(x: Complex, y: Complex) -> float:
     return float(abs(np.vdot(x, y)) / (np.linalg.norm(x) * np.linalg.norm(y)))
 
 
+@pytest.mark.every(4)
 @pytest.mark.parametrize("form", FORMS)
 @pytest.mark.parametrize("engine", ["direct", "cube"])
 @pytest.mark.parametrize("corner", [0.0, 1000.0])

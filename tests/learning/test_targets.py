@@ -121,6 +121,7 @@ COMMANDS = (
 )
 
 
+@pytest.mark.every(2)
 @pytest.mark.parametrize("command", COMMANDS)
 def test_every_target_works_or_is_refused_in_a_line(
     network: tuple[str, Path],

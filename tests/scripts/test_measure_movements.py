@@ -14,6 +14,7 @@ def excesses(bounds: list[script.Bound]) -> list[str]:
     ]
 
 
+@pytest.mark.every(4)
 @pytest.mark.parametrize("way", script.WAYS)
 def test_a_movement_is_within_its_bounds(way: str) -> None:
     bounds = [bound for bound in script.bounds() if bound.way == way]

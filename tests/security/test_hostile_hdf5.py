@@ -448,6 +448,7 @@ def told(
     return answers(place, asked, [command(name, place / "good/set", good_run) for name in COMMANDS])
 
 
+@pytest.mark.every(2)
 @pytest.mark.parametrize("case", [*HOSTILE, *NO_FILES])
 def test_hostile_files_are_refused_by_file_and_field(told: dict[str, Answer], case: str) -> None:
     if case in HOSTILE:
@@ -469,6 +470,7 @@ SEEN_BY_VERIFY = (
 )
 
 
+@pytest.mark.every(3)
 @pytest.mark.parametrize("case", HARMLESS)
 @pytest.mark.parametrize("name", COMMANDS)
 def test_harmless_changes_have_no_effect(told: dict[str, Answer], case: str, name: str) -> None:

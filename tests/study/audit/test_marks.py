@@ -91,6 +91,7 @@ def share(found, group=None):
     return class_share(found.values, TRUTH, group, FAST, "marks", found.ranks)
 
 
+@pytest.mark.every(3)
 @pytest.mark.parametrize("mark", MARKS, ids=lambda mark: mark.__name__)
 @pytest.mark.parametrize("draw", [plain, louder])
 def test_a_mark_is_found_and_named(mark, draw):
@@ -103,6 +104,7 @@ def test_a_mark_is_found_and_named(mark, draw):
         assert re.search(MARKS[mark], found.cure)
 
 
+@pytest.mark.every(3)
 @pytest.mark.parametrize("draw", [plain, louder])
 @pytest.mark.parametrize("seed", range(5))
 def test_without_a_mark_there_is_none(draw, seed):

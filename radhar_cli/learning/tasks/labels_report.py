@@ -101,8 +101,8 @@ def _draw_mistakes(evaluation: Evaluation, is_true: Bool) -> None:
         label = int(wrong[number].argmax())
         name, probability = predictions.names[label], predictions.values[number, label]
         row = int(predictions.rows[number])
-        there = "is there" if is_true[number, label] else "is not there"
-        verdict = f"{name.replace('_', ' ')}: {100 * probability:.0f} %, {there}"
+        presence = "is there" if is_true[number, label] else "is not there"
+        verdict = f"{name.replace('_', ' ')}: {100 * probability:.0f} %, {presence}"
         pictures.append(images.pixels.read(row))
         captions.append(f"{escaped(images.samples.name[row])}\n{verdict}")
     heading = "Most confident mistakes"

@@ -16,6 +16,7 @@ import numpy as np
 from draw_pictures import PICTURES, record_pictures, save_picture
 from PIL import Image
 
+from radhar_cli.commands.terminal import BarProgress
 from radhar_cli.config import Config, load_config
 from radhar_cli.dataset.build import build
 from radhar_cli.dataset.reading import open_dataset
@@ -51,7 +52,7 @@ def draw_some_streams(path: Path, _: Path | None) -> None:
     few = [f"stream.count={2 * STREAMS}", f"split.subjects={2 * STREAMS}"]
     config = load_config(ROOT / "configs/human/streams.yaml", few)
     with tempfile.TemporaryDirectory() as folder:
-        build(config, Path(folder) / "streams", 1)
+        build(config, Path(folder) / "streams", 1, BarProgress())
         with open_dataset(Path(folder) / "streams") as data:
             save_picture(draw_streams(data, "stft", STREAMS), path, DPI, BY)
 

@@ -68,9 +68,13 @@ def draw_motion_files(path: Path, bvh: Path | None) -> None:
     if bvh is None:
         print(f"{path}: needs --bvh")
         return
-    own = {"files": [str(bvh.resolve())], "start": 0, "playback_speed": 1, "mirror": 0}
+    own = {"files": [bvh.name], "start": 0, "playback_speed": 1, "mirror": 0}
     classes = {"from_file": own}
-    chosen = {"classes": classes, "activities": ["from_file"]}
+    chosen = {
+        "classes": classes,
+        "activities": ["from_file"],
+        "motion": {"folder": str(bvh.parent)},
+    }
     recorded = Config.model_validate({**RADAR_24, **chosen, "duration_s": 2.2})
     walking = {"activities": ["walking"], "motion": FACING, "duration_s": 2.2}
     model = Config.model_validate({**RADAR_24, **walking})

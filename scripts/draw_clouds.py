@@ -61,8 +61,8 @@ WALKER = {"range_m": 5.5, "angle_deg": 180, "cross_range_m": 0.6}
 OTHER = {"activity": "walking", "motion": {"range_m": 2.0, "angle_deg": 10, "cross_range_m": -0.8}}
 # Name, activity, motion, other people, frames that are drawn; every tenth has fine motion.
 SCENES: tuple[tuple[str, str, Any, list[Any], tuple[int, ...]], ...] = (
-    ("walks", "walking", WALKER, [], (5, 25, 40, 55)),
-    ("two walk", "walking", WALKER, [OTHER], (5, 25, 40, 55)),
+    ("walks", "walking", WALKER, [], (5, 25, 45, 55)),
+    ("two walk", "walking", WALKER, [OTHER], (5, 25, 45, 55)),
     ("stands", "stationary", {"range_m": 3.0, "angle_deg": 180}, [], (25, 30, 35, 50)),
     ("falls, lies", "falling", {"range_m": 3.0, "angle_deg": 90}, [], (4, 9, 16, 60)),
 )
@@ -131,7 +131,8 @@ def draw_frame(points: Float, skeletons: Float, title: str) -> Image.Image:
     for metre in range(1, int(FAR_M) + 1):
         y = above - metre * scale
         draw.line([(0, y), (width, y)], fill=(232, 232, 232))
-        draw.text((width - 2, y), f"{metre} m", fill=GREY, anchor="rd")
+        if metre + 0.5 < FAR_M:  # below the title
+            draw.text((width - 2, y), f"{metre} m", fill=GREY, anchor="rd")
     draw.line([(0, above), (width, above)], fill=GREY)
     draw.line([(0, above + front), (width, above + front)], fill=GREY)
     for joints in skeletons[np.isfinite(skeletons).all(axis=(1, 2))]:
@@ -190,7 +191,7 @@ def _with_legend(cells: Image.Image) -> Image.Image:
         ("receding", BLUE),
         (f"at rest (below {SLOW_MPS} m/s)", BLACK),
         ("skeleton", GREY),
-        ("above from above, the radar below 0 m; below as the radar sees it, floor grey", BLACK),
+        ("upper parts: from above, the radar at 0 m; lower parts: as the radar sees it", BLACK),
     ):
         draw.text((x, 2), words, fill=colour, font=font)
         x += draw.textlength(words, font) + 18

@@ -16,6 +16,7 @@ import numpy as np
 from draw_pictures import PICTURES, record_pictures, save_picture
 from PIL import Image
 
+from radhar_cli.commands.terminal import BarProgress
 from radhar_cli.config import Config, load_config
 from radhar_cli.dataset.build import build
 from radhar_cli.dataset.reading import open_dataset
@@ -51,7 +52,7 @@ def draw_some_streams(path: Path, _: Path | None) -> None:
     few = [f"stream.count={2 * STREAMS}", f"split.subjects={2 * STREAMS}"]
     config = load_config(ROOT / "configs/human/streams.yaml", few)
     with tempfile.TemporaryDirectory() as folder:
-        build(config, Path(folder) / "streams", 1)
+        build(config, Path(folder) / "streams", 1, BarProgress())
         with open_dataset(Path(folder) / "streams") as data:
             save_picture(draw_streams(data, "stft", STREAMS), path, DPI, BY)
 
@@ -67,9 +68,13 @@ def draw_motion_files(path: Path, bvh: Path | None) -> None:
     if bvh is None:
         print(f"{path}: needs --bvh")
         return
-    own = {"files": [str(bvh.resolve())], "start": 0, "playback_speed": 1, "mirror": 0}
+    own = {"files": [bvh.name], "start": 0, "playback_speed": 1, "mirror": 0}
     classes = {"from_file": own}
-    chosen = {"classes": classes, "activities": ["from_file"]}
+    chosen = {
+        "classes": classes,
+        "activities": ["from_file"],
+        "motion": {"folder": str(bvh.parent)},
+    }
     recorded = Config.model_validate({**RADAR_24, **chosen, "duration_s": 2.2})
     walking = {"activities": ["walking"], "motion": FACING, "duration_s": 2.2}
     model = Config.model_validate({**RADAR_24, **walking})

@@ -1,7 +1,7 @@
 """Save pictures of the documentation, and the commit that each was drawn at.
 
     python scripts/draw_pictures.py                       # print the pictures, oldest first
-    python scripts/draw_pictures.py board.png --by 'radhar simulate ...'
+    python scripts/draw_pictures.py confusion.png --by 'radhar eval ...' [--commit HASH]
 
 Scripts that draw call `save_picture` or `record_pictures`; pictures that a command or a person
 made are recorded by the second line. docs/images/pictures.json has the digest, the commit and the
@@ -43,12 +43,12 @@ def save_picture(figure: Figure, path: Path, dpi: float, by: str = "") -> None:
     print(path)
 
 
-def record_pictures(paths: list[Path], by: str) -> None:
-    """Record pictures of docs/images at the commit of the working tree; others are left alone."""
-    pictures = read_record()
+def record_pictures(paths: list[Path], by: str, commit: str = "") -> None:
+    """Record pictures of docs/images at a commit, that of the working tree; leave others alone."""
+    pictures, commit = read_record(), commit or git("rev-parse", "--short=8", "HEAD")
     for path in paths:
         if PICTURES in path.resolve().parents:
-            entry = {"sha256": digest(path), "commit": _commit(), "by": by}
+            entry = {"sha256": digest(path), "commit": commit, "by": by}
             pictures[str(path.resolve().relative_to(PICTURES))] = entry
     text = json.dumps(dict(sorted(pictures.items())), indent=1)
     RECORD.write_text(text + "\n", encoding="utf-8")
@@ -78,10 +78,6 @@ def git(*arguments: str) -> str:
     return str(done.stdout).strip()
 
 
-def _commit() -> str:
-    return git("rev-parse", "--short=8", "HEAD")
-
-
 def main(arguments: list[str] | None = None) -> None:
     """Record pictures, or print all."""
     parser = argparse.ArgumentParser(
@@ -89,9 +85,10 @@ def main(arguments: list[str] | None = None) -> None:
     )
     parser.add_argument("names", nargs="*", metavar="PICTURE", help="below docs/images")
     parser.add_argument("--by", default="", help="what made them")
+    parser.add_argument("--commit", default="", help="at which; the default is that of the tree")
     given = parser.parse_args(arguments)
     if given.names:
-        record_pictures([PICTURES / name for name in given.names], given.by)
+        record_pictures([PICTURES / name for name in given.names], given.by, given.commit)
         return
     lines = []
     for name, entry in read_record().items():

@@ -53,6 +53,7 @@ CROSSING: dict[str, Any] = {
     ],
 }
 CORNER: dict[str, Any] = {
+    "image": {"range_limits_m": [0, 13]},
     "radar": {"carrier_hz": 24e9, "bandwidth_hz": 2e9, "prf_hz": 2000},
     "duration_s": 4,
     "motion": {

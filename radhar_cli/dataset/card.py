@@ -5,6 +5,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import yaml
 from PIL import Image, ImageDraw, ImageFont
 
@@ -140,7 +141,7 @@ def draw_gallery(data: Dataset, name: str) -> bytes:
     columns = min(len(classes), 4)
     step, lines = SIDE + GAP, -(-len(classes) // columns)
     size = (MARGIN + columns * step, lines * (step + LINE) + LINE)
-    page = Image.new("RGB", size, "white")
+    page = Image.fromarray(np.full((size[1], size[0], 3), 255, np.uint8))
     draw, font = ImageDraw.Draw(page), ImageFont.load_default(12)
     for number, (activity, rows) in enumerate(classes):
         x, y = MARGIN + number % columns * step, number // columns * (step + LINE)

@@ -14,14 +14,14 @@ from radhar_cli.figures.maps_panel import title
 from radhar_cli.figures.page import page, write_figure
 from radhar_cli.figures.sides import (
     Advance,
-    Backdrop,
     Film,
     SideView,
+    StillView,
     bones,
     colour_bar,
     side_legend,
 )
-from radhar_cli.figures.stickman import near_limits, whole_limits
+from radhar_cli.figures.stickman import near_limits, wide_limits
 from radhar_cli.figures.style import joint_colours
 from radhar_cli.motion.skeleton import JOINTS
 from radhar_cli.numerics.arrays import Float
@@ -82,7 +82,7 @@ def draw_frames(content: BoardFrames, path: Path) -> None:
         figure.colorbar(drawn, ax=list(row), pad=0.01, label="dB below the peak")
     if has_cloud:
         near, _, fastest = _limits(content)
-        look, centres = (fastest, _colours(content), _backdrop(content)), _centres(content)
+        look, centres = (fastest, _colours(content), _still_view(content)), _centres(content)
         sides = [
             SideView(axes, "from the radar", near + centres[frame][:, None], *look)
             for axes, frame in zip(grid[-1], chosen, strict=True)
@@ -131,7 +131,7 @@ def label_of(axis: Axis) -> str:
 def draw_cloud(content: BoardFrames, path: Path, advance: Advance) -> None:
     """Write cloud.gif: every frame's points over its skeleton, at true speed."""
     centres = _centres(content)
-    film = Film(content.title, *_limits(content), _colours(content), _backdrop(content))
+    film = Film(content.title, *_limits(content), _colours(content), _still_view(content))
 
     def show(frame: int) -> None:
         clock = f"t = {content.board.middles[frame]:.2f} s"
@@ -168,20 +168,22 @@ def _colours(content: BoardFrames) -> list[str]:
     return joint_colours(JOINTS) if len(content.parents) == len(JOINTS) else []
 
 
-def _backdrop(content: BoardFrames) -> Backdrop:
+def _still_view(content: BoardFrames) -> StillView:
     """Radar at the origin, and the floor below it where it does not look up or down."""
     board = content.board
-    return Backdrop(floor=None if board.tilt else -board.position[2])
+    return StillView(floor=None if board.tilt else -board.position[2])
 
 
 def _limits(content: BoardFrames) -> tuple[Float, Float, float]:
     """Limits [3, 2] of near views and of the one from above, m, and the highest speed, m/s."""
     points, joints = content.products["cloud"].points, _joints(content)
-    near = (joints - _centres(content)[:, None, None]).reshape(-1, 3)
-    places, near = (p[np.isfinite(p).all(axis=1)] for p in (joints.reshape(-1, 3), near))
+    moved = (joints - _centres(content)[:, None, None]).reshape(-1, 3)
+    places: Float = joints.reshape(-1, 3)
+    is_known = np.isfinite(places).all(axis=1)
+    places, near = places[is_known], moved[is_known]
     if not len(places):
         places = near = points[:, :3] if len(points) else np.zeros((1, 3))
-    return near_limits(near), whole_limits(places, Backdrop()), speed_of_colours(points[:, 3])
+    return near_limits(near), wide_limits(places, StillView()), speed_of_colours(points[:, 3])
 
 
 def speed_of_colours(speeds: Float) -> float:

@@ -42,7 +42,7 @@ def limbs(joints: Float, parents: Parents, hips: Float | None) -> Float:
 
 
 @dataclass(frozen=True)
-class Backdrop:
+class StillView:
     """Place of the radar and of what stands around people, in the axes (ahead, left, up), m.
 
     Attributes:
@@ -66,7 +66,7 @@ class SideView:
         limits: Float,
         fastest: float,
         colours: Sequence[str],
-        around: Backdrop,
+        around: StillView,
     ) -> None:
         """Prepare the axes.
 
@@ -91,7 +91,7 @@ class SideView:
             axes.set_ylabel(LABELS[self.up])
         if self.across == 1:
             axes.invert_xaxis()
-        _draw_backdrop(axes, name, around)
+        _draw_still_view(axes, name, around)
 
     def show(self, points: Float, speed: Float, ends: Float) -> None:
         """Show points [n, 3], their approaching speed [n], and bones [bone, 2, 3], in m and m/s."""
@@ -100,7 +100,7 @@ class SideView:
         self.points.set_array(speed)
 
 
-def _draw_backdrop(axes: Axes, name: str, around: Backdrop) -> None:
+def _draw_still_view(axes: Axes, name: str, around: StillView) -> None:
     """Draw the floor, or from above the radar and the walls, and say where the radar is."""
     if name == "from above":
         for outline in around.outlines:
@@ -141,10 +141,10 @@ class Film:
         self,
         title: str,
         near: Float,
-        from_above: Float,
+        wide: Float,
         fastest: float,
         colours: Sequence[str],
-        around: Backdrop,
+        around: StillView,
         share: float = 1.0,
     ) -> None:
         """Prepare the figure.
@@ -152,7 +152,7 @@ class Film:
         Args:
             title: line above.
             near: limits [3, 2] of the views from the radar and from the side, m.
-            from_above: limits [3, 2] of the view from above, m.
+            wide: limits [3, 2] of the view from above, m.
             fastest: speed at the ends of the colours, m/s.
             colours: colours of the bones of each body, by joint.
             around: what stands still.
@@ -163,7 +163,7 @@ class Film:
         self.sides = [
             SideView(
                 self.figure.add_axes((share * left, 0.16, share * 0.265, 0.7)),
-                *(name, from_above if name == "from above" else near, fastest, colours, around),
+                *(name, wide if name == "from above" else near, fastest, colours, around),
             )
             for left, name in zip((0.055, 0.345, 0.675), VIEWS, strict=True)
         ]

@@ -5,11 +5,12 @@ from pathlib import Path
 import numpy as np
 
 from radhar_cli.figures.maps_panel import draw_map, of_simulation, title
-from radhar_cli.figures.sides import Advance, Backdrop, Film, limbs
+from radhar_cli.figures.sides import Advance, Film, StillView, limbs
 from radhar_cli.figures.style import joint_colours
 from radhar_cli.numerics.arrays import Float
 from radhar_cli.scene.single.simulate import Simulation
 from radhar_cli.scene.single.truth import WHOLE
+from radhar_cli.schema.number import Number, nominal
 
 FRAMES_PER_SECOND = 20
 SHOWN_BESIDE = ("stft", "fsst", "stft_compensated", "rtm")
@@ -35,12 +36,12 @@ def draw_stickman(simulation: Simulation, path: Path, advance: Advance) -> None:
     alone = len(people) == 1
     middle = np.nan_to_num(truth.positions.mean(axis=1)) * (alone, alone, 0)
     tracks = [person.positions for person, _ in people] or [np.zeros((1, 1, 3))]
-    around = backdrop_of(simulation)
-    corners = np.concatenate([_corners(p) for p in tracks])
-    near = _corners(tracks[0] - middle[:, None]) if alone else corners
+    around = still_view_of(simulation)
+    wide = np.concatenate([_corners(p) for p in tracks])
+    near = _corners(tracks[0] - middle[:, None]) if alone else wide
     fastest = max(float(np.nan_to_num(np.abs(truth.radial_velocity)).max()), 0.1)
     colours = joint_colours(simulation.motion.names)
-    limits = near_limits(near), whole_limits(corners, around)
+    limits = near_limits(near), wide_limits(wide, around)
     film = Film(title(simulation), *limits, fastest, colours, around, share=0.7)
     cursor = []
     map_names = [name for name in SHOWN_BESIDE if name in simulation.maps] or list(simulation.maps)
@@ -68,18 +69,24 @@ def draw_stickman(simulation: Simulation, path: Path, advance: Advance) -> None:
     film.write(path, show, count, frame_ms, advance, others=cursor)
 
 
-def backdrop_of(simulation: Simulation) -> Backdrop:
+def still_view_of(simulation: Simulation) -> StillView:
     """Radar, floor, wall and room of a scene."""
     antennas, wall = simulation.antennas, simulation.wall
-    room = simulation.scene.config.room.make_box()
+    room = simulation.scene.config.room
     boxes = [] if wall is None else [wall.bounds[:2]]
-    boxes += [] if room is None else [(room.x, room.y)]
+    if room.faces is not None and room.box_m is not None:
+        boxes.append((_numbers(room.box_m.x), _numbers(room.box_m.y)))
     corners = [
         np.array([(x[0], y[0]), (x[1], y[0]), (x[1], y[1]), (x[0], y[1]), (x[0], y[0])])
         for x, y in boxes
     ]
     radar = np.mean([antennas.tx, antennas.rx], axis=0)
-    return Backdrop(radar.tolist(), 0.0, corners)
+    return StillView(radar.tolist(), 0.0, corners)
+
+
+def _numbers(ends: tuple[Number, Number]) -> tuple[float, float]:
+    """Ends that a scene has drawn, as numbers."""
+    return float(nominal(ends[0])), float(nominal(ends[1]))
 
 
 def _corners(places: Float) -> Float:
@@ -97,7 +104,7 @@ def near_limits(places: Float) -> Float:
     return np.stack([start, start + side], axis=1)
 
 
-def whole_limits(places: Float, around: Backdrop) -> Float:
+def wide_limits(places: Float, around: StillView) -> Float:
     """Limits [3, 2] (m) of places [n, 3], of the radar and of walls, as seen from above."""
     walls = [np.insert(outline, 2, 0.0, axis=1) for outline in around.outlines]
     places = np.concatenate([places, [around.radar], *walls])

@@ -113,9 +113,10 @@ def _draw_strip(
         room, middle = (stop - start) / labels.size / letter, left + 0.5 * (start + stop) * step
         words = name if room > len(name) else str(label + 1)
         if name not in AT_REST and room > len(words):
-            dark = sum(to_rgb(colours[label])) < 1.5
+            red, green, blue = to_rgb(colours[label])
+            is_dark = 0.3 * red + 0.59 * green + 0.11 * blue < 0.55
             look: dict[str, Any] = {"ha": "center", "va": "center", "fontsize": SMALL}
-            axes.text(middle, 0.48, words, color="white" if dark else "black", **look)
+            axes.text(middle, 0.48, words, color="white" if is_dark else "black", **look)
     axes.set_xlim(left, right)
     axes.set_ylim(0, 1)
     axes.set_yticks([])

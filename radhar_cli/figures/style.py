@@ -48,7 +48,8 @@ def distinct_colours(count: int) -> list[Colour]:
     table = [colormaps["tab20"](2 * n + light)[:3] for light in (0, 1) for n in places]
     golden = 0.618034
     hues = [colorsys.hsv_to_rgb(golden * n % 1, 0.85, 0.6) for n in range(count - len(table))]
-    return [*table, *hues][:count]
+    colours: list[Colour] = [*table, *hues]
+    return colours[:count]
 
 
 def rounded(value: float, digits: int = 3) -> str:

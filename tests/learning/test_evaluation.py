@@ -377,6 +377,9 @@ def test_the_page_is_for_people_and_the_same_each_time(mistaken, learned, tmp_pa
     assert not re.search(r"<td>[^<]*\d\.\d{8,}", page), "a number has few digits"
     assert "label smoothing" in page.lower()
     assert "learning_rate" in page
+    assert page.index("tested on") < page.index("<h2>") < page.index("<img")
+    assert page.index("Calibration: how often") < page.index("<h3>Class by class")
+    assert re.search(r"\d+ % on average, and \d+ % of them are right: it is ", page)
     other, _ = evaluated(learned, mistaken[0])
     other.write(tmp_path)
 

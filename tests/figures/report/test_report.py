@@ -56,6 +56,14 @@ def test_a_page_shows_names_from_elsewhere_as_they_are(tmp_path):
     assert re.findall(r'src="([^"]*)"', page) == ["data:image/png;base64,iVBORw=="]
 
 
+def test_numbers_of_a_page_have_three_digits(tmp_path):
+    made = Report({}, "t", formats=("html", "md"))
+    made.add(ReportTable(("share",), [(0.123456,)]))
+    made.write(tmp_path)
+    assert '<td class="number">0.123</td>' in (tmp_path / "report.html").read_text()
+    assert "| 0.1235 |" in (tmp_path / "report.md").read_text()
+
+
 def test_markdown_keeps_cells_apart(tmp_path):
     report(formats=("md",)).write(tmp_path)
     text = (tmp_path / "report.md").read_text()

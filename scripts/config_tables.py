@@ -2,13 +2,14 @@
 
     python scripts/config_tables.py
 
-A table stands between `<!-- keys: SECTIONS -->` or `<!-- limits -->` and `<!-- end -->`; `-` is
-what lies in no section. What stands around them is written by hand.
+A table stands between `<!-- keys: SECTIONS -->`, `<!-- limits -->` or `<!-- tasks -->` and
+`<!-- end -->`; `-` is what lies in no section. What stands around them is written by hand.
 """
 
 import inspect
 import re
 from collections.abc import Collection, Iterator
+from functools import partial
 from pathlib import Path
 from typing import Any, Literal, get_args, get_origin
 
@@ -35,14 +36,43 @@ from radhar_cli.schema.section import PerActivity, Section
 
 REFERENCE = Path(__file__).resolve().parents[1] / "docs/reference"
 PAGES = ("config.md", "config_signal.md", "limits.md")
-MARKER = re.compile(r"<!-- (keys: [^>]*|limits) -->")
+MARKER = re.compile(r"<!-- (keys: [^>]*|limits|tasks) -->")
+# Tasks, the keys that they take, and the page that tells of them.
+TASKS = {
+    "choose the classes": ("activities classes samples_per_class", "guide/motion"),
+    "describe my radar": (
+        "radar.carrier_hz radar.bandwidth_hz radar.prf_hz radar.tx_m",
+        "guide/frames",
+    ),
+    "simulate my TI board": ("radar.cfg radar.device cloud.chain", "guide/boards"),
+    "have several radars": ("radars", "guide/several_radars"),
+    "say who people are": ("subject.height_m body.scatterers", "guide/motion"),
+    "place people": (
+        "motion.place.range_m motion.place.cross_range_m motion.angle_deg",
+        "guide/motion",
+    ),
+    "say how long, and when they begin": ("duration_s timing.onset timing.visible", "guide/motion"),
+    "have minutes of one thing after the other": ("stream.count stream.bout_s", "guide/streams"),
+    "use my motion capture": ("classes motion.folder", "guide/motion_files"),
+    "add other people, a room, a wall": (
+        "people room.faces wall.size_m wall.eps_r",
+        "guide/scenes",
+    ),
+    "set the noise": ("snr_db receiver.noise_figure_db", "results/noise"),
+    "choose maps and images": ("maps image.size_px image.dynamic_range_db", "results/gallery"),
+    "choose the transform": ("processing.window_s processing.overlap_fraction", "physics/model"),
+    "keep persons apart in the split": ("split.by split.subjects split.test", "guide/training"),
+    "cut recordings of a real radar": ("recordings.window_s recordings.hop_s", "guide/measured"),
+    "save time or files": ("engine.tolerance_db output.png", "results/tradeoff"),
+}
 
 
 def fill_tables(page: str) -> str:
     """Return a page with its tables as the schema has them."""
     for marker in MARKER.finditer(page):
         kind, _, names = marker[1].partition(": ")
-        table = "\n".join(_limits() if kind == "limits" else _keys(names.split()))
+        rows = {"limits": _limits, "tasks": _tasks}.get(kind) or partial(_keys, names.split())
+        table = "\n".join(rows())
         page = replace_part(page, marker[1], table, marker[0], "<!-- end -->")
     return page
 
@@ -155,6 +185,19 @@ def _shown(value: Any) -> str:
         case BaseModel():
             return as_text(value.model_dump())
     return as_text(value)
+
+
+def _tasks() -> Iterator[str]:
+    """Rows of tasks; a key that the schema does not have is a mistake of TASKS."""
+    yield "| to | set | read |"
+    yield "| --- | --- | --- |"
+    known = {*annotations(Config), *Config.model_fields}
+    for task, (keys, page) in TASKS.items():
+        missing = {*keys.split()} - known
+        if missing:
+            raise ValueError(f"keys of {task!r} that the schema does not have: {missing}")
+        written = ", ".join(f"`{key}`" for key in keys.split())
+        yield f"| {task} | {written} | [{Path(page).name.replace('_', ' ')}](../{page}.md) |"
 
 
 def _limits() -> Iterator[str]:

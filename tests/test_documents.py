@@ -297,6 +297,12 @@ FILES: dict[str, dict[str, Callable[[Path], object]]] = {
         "gait.c3d": gait_markers,
     },
     "output.md": {"CONFIG": few_samples, "datasets/mine": data_set},
+    "recipes.md": {
+        "walk.bin": dump,
+        "replay_1.json": replay,
+        "board.cfg": lambda path: path.write_text(CFG),
+        "config.yaml": few_samples,
+    },
     "stream.md": {"datasets/quickstart": data_set},
     "training.md": {
         "datasets/quickstart": data_set_of_three_parts,

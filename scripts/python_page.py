@@ -31,6 +31,23 @@ radhar.train("sweep/30dB", "sweep/run", {"epochs": 2})
 evaluated = radhar.evaluate("sweep/run", ["sweep/30dB", "sweep/10dB"])
 print(evaluated.scores["accuracy"])
 ```
+
+The network that this trained, called on an array as the data set has it (grey levels, drawn in the colours of its pictures), and asked
+about a data set, whose answers go to a file:
+
+```python
+import radhar
+
+run = radhar.load_run("sweep/run", device="cpu")
+print(run.target, run.classes, run.input_shape, run.units)
+with radhar.open_dataset("sweep/10dB") as data:
+    levels = data.maps[run.metadata.map][:8]  # uint8 [8, H, W]
+probabilities = run(levels)  # [8, classes]
+print([run.classes[number] for number in probabilities.argmax(1)])
+found = run.predict("sweep/10dB", split="val")
+print(found.samples[0], found.likeliest[0])
+found.write("sweep/found.csv")
+```
 """
 SECTIONS = {
     "Configs and data sets": (
@@ -42,8 +59,7 @@ SECTIONS = {
     "What they return": (
         "radhar_cli.learning.trained_run.TrainedRun",
         "radhar_cli.learning.interface.EvaluatedRuns",
-        "radhar_cli.learning.trained_run.EstimatedClasses",
-        "radhar_cli.learning.estimated_joints.EstimatedJoints",
+        "radhar_cli.learning.estimates.RunEstimates",
         "radhar_cli.scene.single.simulate.Simulation",
         "radhar_cli.processing.power_map.PowerMap",
         "radhar_cli.dataset.reading.Dataset",

@@ -1,4 +1,4 @@
-"""`radhar compare`: how far two data sets of maps are apart, class by class."""
+"""`radhar compare`: how far two data sets of maps or clouds are apart, class by class."""
 
 from pathlib import Path
 from typing import Annotated, Any
@@ -8,6 +8,8 @@ import typer
 from radhar_cli.commands.learning_options import AnyMap, Classes
 from radhar_cli.commands.options import ReplaceResults, refuse_to_replace_results
 from radhar_cli.commands.tell import report, tell
+
+SHOWN = 3  # statistics of a class that are printed, the largest differences
 
 
 def compare(
@@ -30,13 +32,15 @@ def compare(
     seed: Annotated[int, typer.Option(min=0, help="Seed of the random subset.")] = 1,
     overwrite: ReplaceResults = False,
 ) -> None:
-    """Measure how much simulated maps differ from measured ones.
+    """Measure how much simulated maps or point clouds differ from measured ones.
 
     Prints statistics, their distances, and the result of a two-sample test.
 
     Example:
 
       radhar compare datasets/like_measured datasets/measured -o out/compared
+
+      radhar compare datasets/boards datasets/mars -o out/clouds --map points
 
     The test trains a classifier: 50 % means that it cannot tell simulated from measured maps.
     """
@@ -60,8 +64,20 @@ def compare(
     numbers = comparison.numbers()
     for name, of_class in numbers["classes"].items():
         tell(f"{name}: {_accuracy_text(of_class['test'])}")
+        for statistic in [*of_class["statistics"].values()][:SHOWN]:
+            tell(f"  {_difference_text(statistic)}")
     tell(f"all classes: {_accuracy_text(numbers['test'])}")
     report(files=files, **{key: numbers[key] for key in ("test", "classes", "warnings")})
+
+
+def _difference_text(statistic: dict[str, Any]) -> str:
+    """Means of a statistic on either side, and the distance of the two, as text."""
+    simulated, measured = statistic["simulated"]["mean"], statistic["measured"]["mean"]
+    return (
+        f"{statistic['words']}: {simulated:.3g} simulated, {measured:.3g} measured "
+        f"{statistic['unit']}".rstrip()
+        + f"; distance {statistic['distance']:.2f}"
+    )
 
 
 def _accuracy_text(test: dict[str, Any] | None) -> str:

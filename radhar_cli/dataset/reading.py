@@ -24,6 +24,7 @@ from radhar_cli.files.untrusted import Closing
 from radhar_cli.numerics.arrays import Float, Index, Levels
 from radhar_cli.readers.untrusted_hdf5 import Column, NumberColumn, UntrustedFile
 
+NO_DATA_SET = "no such file; `radhar prepare` makes data sets of images and points"
 MAX_ENTROPY_BITS = 64.0
 BLOCK = 4096  # rows of a column read at once
 
@@ -307,7 +308,7 @@ def why_missing(path: Path) -> str:
     if (parts := path / layout.PARTS).is_dir():
         return f"not made yet; `radhar merge {target}` puts the parts in {parts} together"
     if not layout.is_incomplete(path):
-        return describe_missing(path, "no such file")
+        return describe_missing(path, NO_DATA_SET if path.is_dir() else "no such file")
     part = (stored_identity(path) or {}).get("part")
     if part is not None and (path / layout.WORK / layout.BUILT).exists():
         return f"{path} is part {part} alone; `radhar merge OUT` makes OUT of all parts"

@@ -31,7 +31,7 @@ class LabelledMap:
 
 
 def draw_labelled_maps(
-    maps: Sequence[LabelledMap], names: Sequence[str], colour_map: str
+    maps: Sequence[LabelledMap], names: Sequence[str], colour_map: str, across: str = "time (s)"
 ) -> Figure:
     """Draw maps one below the other, each with its labels as coloured strips.
 
@@ -39,6 +39,7 @@ def draw_labelled_maps(
         maps: maps with their labels.
         names: names of the labels.
         colour_map: colour map of the levels.
+        across: quantity and unit of the columns.
     """
     seconds = max(labelled.extent[1] - labelled.extent[0] for labelled in maps)
     width = float(np.clip(INCHES_A_SECOND * seconds, NARROWEST, WIDEST))
@@ -65,7 +66,7 @@ def draw_labelled_maps(
             axes.set_ylabel(strip, fontsize=7, rotation=0, ha="right", va="center")
             axes.tick_params(labelsize=6, length=2, labelbottom=False)
         axes.tick_params(labelbottom=True)
-    axes.set_xlabel("time (s)", fontsize=7)
+    axes.set_xlabel(across, fontsize=7)
     present = np.unique(np.concatenate([labels for m in maps for labels in m.strips.values()]))
     handles = [Patch(color=colours[n], label=names[n]) for n in present.tolist() if n >= 0]
     figure.legend(handles=handles, loc="outside right upper", fontsize=7, frameon=False)

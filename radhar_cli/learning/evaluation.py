@@ -2,7 +2,7 @@
 
 import statistics
 import time
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping
 from contextlib import suppress
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -11,22 +11,27 @@ import numpy as np
 import torch
 from torch import nn
 
+from radhar_cli.config.reading import Overrides
 from radhar_cli.dataset.radar_folders import describe_missing
 from radhar_cli.dataset.reading import open_dataset
 from radhar_cli.dataset.split import TEST, TRAIN
-from radhar_cli.errors import FolderError
+from radhar_cli.errors import ConfigError, FolderError
 from radhar_cli.learning.batches import Reader, batches_in_order
+from radhar_cli.learning.images.cloud_files import (
+    CloudFilePixels,
+    is_cloud_file,
+    open_cloud_file,
+)
 from radhar_cli.learning.images.colours import recolour
 from radhar_cli.learning.images.folder import image_files, is_image, open_pictures
 from radhar_cli.learning.images.image_set import ImageSet, Pixels, resized
 from radhar_cli.learning.images.opening import is_h5, is_tree, open_inputs
 from radhar_cli.learning.images.scan import content_hash
+from radhar_cli.learning.images.sequences import SequenceReader
 from radhar_cli.learning.models.build import compute_features_and_logits
 from radhar_cli.learning.run_files import RunError, is_run
 from radhar_cli.learning.run_folder import RunMetadata, load_best
-from radhar_cli.learning.tasks.categories import Categories
 from radhar_cli.learning.tasks.predictions import ClassPredictions, Predictions
-from radhar_cli.learning.tasks.skeleton import Skeleton
 from radhar_cli.numerics.arrays import Float, Index
 from radhar_cli.processes.progress import NO_PROGRESS, Progress
 
@@ -232,55 +237,20 @@ class Inputs:
     rows: Index
     names: tuple[str, ...]  # [len(rows)]
     notes: tuple[str, ...]  # what was done to make them fit
-
-
-def predict_paths(
-    run: Path,
-    paths: Sequence[Path],
-    device: torch.device,
-    map_name: str | None,
-    split: str,
-    resize: bool = False,
-    say: Callable[[str], None] | None = None,
-) -> Iterator[tuple[str, dict[str, float]]]:
-    """Yield (name, {class: probability}) for every image.
-
-    Args:
-        run: folder of the run.
-        paths: images, folders of images, or data sets.
-        map_name: map of a data set; None is the one of the training.
-        split: split of a data set.
-        resize: bring images to the model's size.
-        say: receives notes on images that were made to fit.
-
-    Raises:
-        RunError: the run is damaged, or finds no classes.
-        FolderError: no such data, or images of another size.
-    """
-    metadata, model = load_best(run)
-    if not isinstance(metadata.task, Categories):
-        to_file = isinstance(metadata.task, Skeleton)
-        hint = "; `-o joints.npz` writes them to a file" if to_file else ""
-        raise RunError(f"{run}: finds {metadata.task.finds}, no classes{hint}")
-    model.to(device)
-    for path in paths:
-        inputs = open_unlabelled(metadata, path, map_name, split, resize)
-        if say is not None:
-            for note in inputs.notes:
-                say(note)
-        image_names = iter(inputs.names)
-        batches = predict_batches(
-            model, metadata, inputs.pixels, inputs.rows, device, PREDICT_BATCH
-        )
-        for probabilities in batches:
-            for shares in probabilities.tolist():
-                yield next(image_names), dict(zip(metadata.classes, shares, strict=True))
+    first: Index  # [len(rows)] first column of a window of a stream, first frame of a sequence
+    lengths: Index  # [len(rows)] number of frames of a sequence that its sample has; 1 of an image
+    colours: str | None = None  # colour map of gray levels, or of pictures, where it is known
 
 
 def open_unlabelled(
-    metadata: RunMetadata, path: Path, map_name: str | None, split: str, resize: bool
+    metadata: RunMetadata,
+    path: Path,
+    map_name: str | None = None,
+    split: str = "all",
+    resize: bool = False,
+    settings: Overrides = (),
 ) -> Inputs:
-    """Open an image, a folder of images or a data set for a network that is asked about it.
+    """Open an image, a folder of images, a table of points or a data set for a network.
 
     Args:
         metadata: description of the model.
@@ -288,30 +258,48 @@ def open_unlabelled(
         map_name: map of a data set; None is the one of the training.
         split: split of a data set.
         resize: bring images to the model's size.
+        settings: what a table of points does not say (`PointTableSettings`).
 
     Raises:
-        FolderError: no such data, or images of another size.
-        RunError: the network reads sequences, which come from data sets only.
+        RadharError: no such data, images of another size, or a file that the network does not read.
     """
     if not path.exists():
         raise FolderError(f"{path}: {describe_missing(path)}")
     if is_run(path):
         raise FolderError(f"{path}: is a training run; images or data are asked for here")
+    if metadata.input == "clouds" and is_cloud_file(path):
+        pixels = open_cloud_file(path, metadata.size, settings)
+        first, lengths = _spans(pixels, range(len(pixels.places)))
+        names = tuple(f"{path}: frame {number}" for number in first.tolist())
+        return Inputs(pixels, np.arange(len(names)), names, (), first, lengths)
+    if settings:
+        raise ConfigError(f"{path}: is no table of points, which axes and columns are said of")
     if not metadata.reads_pictures and not is_h5(path):
-        raise RunError(f"{path}: {metadata.model} reads {metadata.input}; should be a data set")
+        right = "should be a data set"
+        if metadata.input == "clouds":
+            right += ", a recording of points, or a table with frame, x, y, z and Doppler"
+        raise RunError(f"{path}: {metadata.model} reads {metadata.input}; {right}")
     files = image_files(path, path) if is_tree(path) else [p for p in (path,) if is_image(p)]
     if files:
         size = None if resize else metadata.size
         images = recolour(open_pictures(path, files, metadata.input, size), metadata.colours)
         if resize:
             images = resized(images, metadata.size)
-        return Inputs(
-            images.pixels, np.arange(len(files)), tuple(images.samples.name), images.notes
-        )
-    images = open_for_model(metadata, path, map_name, labelled=False, resize=resize)
-    rows, _ = rows_of(images, split)
-    names = tuple(f"{path}: {images.samples.name[row]}" for row in rows)
-    return Inputs(images.pixels, rows, names, images.notes)
+        names, rows = tuple(images.samples.name), np.arange(len(files))
+    else:
+        images = open_for_model(metadata, path, map_name, labelled=False, resize=resize)
+        rows, _ = rows_of(images, split)
+        names = tuple(f"{path}: {images.samples.name[row]}" for row in rows)
+    first, lengths = images.samples.first_columns[rows], np.ones(rows.size, np.intp)
+    if isinstance(images.pixels, SequenceReader):
+        first, lengths = _spans(images.pixels, rows.tolist())
+    return Inputs(images.pixels, rows, names, images.notes, first, lengths, images.colours)
+
+
+def _spans(pixels: SequenceReader | CloudFilePixels, rows: Iterable[int]) -> tuple[Index, Index]:
+    """First frame of each sequence in its sample [N], and the number of its frames there [N]."""
+    spans = np.array([pixels.span(row) for row in rows], np.intp).reshape(-1, 2)
+    return spans[:, 0], spans[:, 1]
 
 
 def measure_speed(

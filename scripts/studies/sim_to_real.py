@@ -30,7 +30,6 @@ from pathlib import Path
 
 import numpy as np
 import torch
-from few_shots import few_shots
 from PIL import Image
 from scipy import ndimage
 from shared import ROOT, as_options, run_radhar, wilson_of_share
@@ -40,6 +39,7 @@ from radhar_cli.dataset.reading import open_dataset
 from radhar_cli.errors import CaptureError
 from radhar_cli.figures.two_samples import Picture, pictures_png
 from radhar_cli.learning.evaluation import open_for_model, predict_classes
+from radhar_cli.learning.few_shots import ShotOptions, measure_few_shots
 from radhar_cli.learning.images.image_set import ImageSet
 from radhar_cli.learning.run_folder import load_best
 from radhar_cli.numerics.arrays import Bool, Float, Index, Levels
@@ -335,7 +335,9 @@ def ablation(measured: Measured, images: Path, out: Path, given: argparse.Namesp
 def curve(measured: Measured, images: Path, run: Path, out: Path) -> None:
     """Print accuracy with k labelled maps a class: fine-tuned, adapted as well, from scratch."""
     more = (f"epochs={SHOT_EPOCHS}",)
-    few_shots(run, measured.folder, out, SHOTS, REPEATS, (images,), ADAPTING, more)
+    options = ShotOptions(SHOTS, REPEATS, (images,), ADAPTING, more)
+    for result in measure_few_shots(run, measured.folder, out, options):
+        print(result, flush=True)
 
 
 def adapted(run: Path, measured: Measured, data: Path, out: Path) -> Path:

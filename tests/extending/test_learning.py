@@ -51,11 +51,14 @@ def test_a_network_and_a_task_go_through_every_command(tmp_path: Path) -> None:
     levels = torch.zeros(2, 1, 32, 32, dtype=torch.uint8)
     assert loaded(levels).shape == (2,)
     assert loaded(levels).isfinite().all()
-    for words in (("predict", run, data), ("adapt", run, data, "-o", tmp_path / "adapted")):
-        refused = radhar(*words)
-        assert refused.returncode == 2
-        assert "finds brightness" in refused.stderr
-        assert refused.stderr.count("\n") == 1
+    done = radhar("predict", run, data, "--split", "val")
+    assert done.stdout.splitlines()[0].startswith(f"{data}: kicking/000: brightness 0.")
+    done = radhar("predict", run, data, "-o", tmp_path / "found.csv")
+    assert (tmp_path / "found.csv").read_text().startswith("sample,brightness\n")
+    refused = radhar("adapt", run, data, "-o", tmp_path / "adapted")
+    assert refused.returncode == 2
+    assert "finds brightness" in refused.stderr
+    assert refused.stderr.count("\n") == 1
     refused = radhar("eval", run, data, "--tsne", "-o", tmp_path / "tsne")
     assert "run finds brightness; that figure is of classes" in refused.stderr
 

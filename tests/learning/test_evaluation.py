@@ -23,13 +23,13 @@ from radhar_cli.learning.evaluation import (
     measure_speed,
     open_for_model,
     predict_classes,
-    predict_paths,
 )
 from radhar_cli.learning.onnx_export import export
 from radhar_cli.learning.report import evaluate
 from radhar_cli.learning.run_files import BEST
 from radhar_cli.learning.run_folder import load_best
 from radhar_cli.learning.tasks.predictions import EvalOptions
+from radhar_cli.learning.trained_run import load_run
 
 CPU = torch.device("cpu")
 
@@ -254,29 +254,31 @@ def test_speed_times_what_the_paper_times(learned):
 
 def test_predict_of_files_and_folders(learned):
     run, root = learned
-    file = root / "val/walking/001.png"
-    answers = list(predict_paths(run, [file, root], CPU, None, "val"))
-    assert [name for name, _ in answers[:2]] == [str(file), f"{root}: kicking/000"]
-    assert len(answers) == 10
-    for name, chances in answers:
-        assert list(chances) == ["kicking", "punching", "walking"]
-        assert sum(chances.values()) == pytest.approx(1, abs=1e-6)
-        assert max(chances, key=chances.__getitem__) in name
-    assert dict(answers)[f"{root}: walking/001"] == pytest.approx(answers[0][1], abs=1e-5)
+    network, file = load_run(run, "cpu"), root / "val/walking/001.png"
+    one, many = network.predict(file, split="val"), network.predict(root, split="val")
+    assert one.samples == (str(file),)
+    assert many.samples[0] == f"{root}: kicking/000"
+    assert len(many) == 9
+    assert many.classes == ("kicking", "punching", "walking")
+    np.testing.assert_allclose(many.probabilities.sum(1), 1, atol=1e-6)
+    assert all(best in name for best, name in zip(many.likeliest, many.samples, strict=True))
+    place = many.samples.index(f"{root}: walking/001")
+    np.testing.assert_allclose(many.probabilities[place], one.probabilities[0], atol=1e-5)
 
 
 def test_predict_needs_no_labels(learned, tmp_path):
     root = tree(tmp_path / "t", ("who", "knows"), {"": 1})
-    assert len(list(predict_paths(learned[0], [root], CPU, None, "all"))) == 2
+    assert len(load_run(learned[0], "cpu").predict(root)) == 2
 
 
 def test_predict_refuses_other_sizes_and_damage(learned, tmp_path):
     Image.new("RGB", (64, 32)).save(tmp_path / "a.png")
     Image.new("RGB", (32, 32)).save(tmp_path / "b.png")
     (tmp_path / "b.png").write_bytes((tmp_path / "b.png").read_bytes()[:50])
+    network = load_run(learned[0], "cpu")
     for name, expected in (("a", "32 x 64 px"), ("b", "truncated"), ("c", "no such file")):
         with clear_line(FolderError, tmp_path / f"{name}.png", expected):
-            list(predict_paths(learned[0], [tmp_path / f"{name}.png"], CPU, None, "all"))
+            network.predict(tmp_path / f"{name}.png")
 
 
 def test_onnx_runtime_gives_the_same_probabilities(learned, tmp_path):

@@ -91,6 +91,15 @@ def test_columns_are_learned_and_reported(folder: Path, tmp_path: Path) -> None:
     assert numbers["frames"] == 3 * 120
     assert 0 <= numbers["segment_f1_50"] <= numbers["segment_f1_10"] <= 1
     assert (tmp_path / "report/streams.png").exists()
+    found = tmp_path / "found.json"
+    run("predict", tmp_path / "run", folder, "-o", found, "--overlay", tmp_path / "found.png")
+    first = json.loads(found.read_text())[0]
+    assert {len(first["class"]), *map(len, first["probabilities"].values())} == {60}
+    assert set(first["class"]) <= {*first["probabilities"]}
+    lines = run("predict", tmp_path / "run", folder).splitlines()
+    assert lines[0].startswith(f"{first['sample']}: {first['class'][0]} from 0")
+    done = run("export", tmp_path / "run", "-o", tmp_path / "run.onnx")
+    assert "ONNX Runtime agrees" in done
 
 
 def test_windows_are_learned_as_images_are(folder: Path, tmp_path: Path) -> None:

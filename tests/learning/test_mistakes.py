@@ -26,11 +26,12 @@ from radhar_cli.errors import FolderError, ModelError, RadharError
 from radhar_cli.learning import run_files
 from radhar_cli.learning import run_folder as run
 from radhar_cli.learning.batches import Reader, batches_in_order
-from radhar_cli.learning.evaluation import open_for_model, predict_paths, rows_of
+from radhar_cli.learning.evaluation import open_for_model, rows_of
 from radhar_cli.learning.images.opening import open_images
 from radhar_cli.learning.report import evaluate
 from radhar_cli.learning.run_folder import RunError
 from radhar_cli.learning.tasks.predictions import EvalOptions
+from radhar_cli.learning.trained_run import load_run
 
 CPU = torch.device("cpu")
 
@@ -169,8 +170,8 @@ def test_a_class_without_validation_images_is_warned_of(tmp_path):
 
 
 def test_predict_takes_a_folder_of_images(run_dir, data):
-    answers = list(predict_paths(run_dir, [data / "val/walking"], CPU, None, "all"))
-    assert [Path(name).name for name, _ in answers] == ["000.png", "001.png"]
+    found = load_run(run_dir, "cpu").predict(data / "val/walking")
+    assert [Path(name).name for name in found.samples] == ["000.png", "001.png"]
 
 
 def test_a_broken_file_in_a_worker_is_one_line(tmp_path):

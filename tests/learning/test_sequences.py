@@ -248,8 +248,7 @@ def test_images_are_refused_where_a_network_reads_clouds(boards: Path) -> None:
         ),
         (("eval", run, boards / "data", "--resize"), "reads clouds, which have no size"),
         (("eval", run, boards / "data", "--tsne"), "reads clouds; it is of images"),
-        (("predict", run, boards / "data"), "finds joints, no classes"),
-        (("predict", run, boards / "data", "-o", boards / "x.txt"), "end in .npz or .csv"),
+        (("predict", run, boards / "data", "-o", boards / "x.txt"), "end in .npz, .csv or .json"),
     ):
         done = radhar(*words)
         assert done.returncode == 2, done.stderr

@@ -1,17 +1,18 @@
 """Every target with every command of learning: each works, or is refused in a line."""
 
+import csv
+import json
 import shutil
-import sys
 from pathlib import Path
 
-import few_shots
+import numpy as np
 import pytest
 from helpers.boards import CFG, CLOUDS
 from helpers.command_line import Done, radhar
 from helpers.slow import slow
+from PIL import Image
 
-from radhar_cli.errors import RadharError
-from radhar_cli.learning import adaptation
+from radhar_cli.learning import adaptation, few_shots
 
 IMAGES = """
 radar: {carrier_hz: 24e9, bandwidth_hz: 1e9, prf_hz: 500}
@@ -40,10 +41,6 @@ REFUSED = {
         "labels": "finds several labels at a time; should be a run of classes",
         **dict.fromkeys(JOINTS, "finds joints; should be a run of classes"),
     },
-    "predict": dict.fromkeys(JOINTS, "-o joints.npz"),
-    "predict -o": dict.fromkeys(
-        NETWORKS.keys() - {*JOINTS}, "-o: is for networks that find joints"
-    ),
 }
 REFUSED |= dict.fromkeys(("adapt --epochs", "adapt --mix", "few shots"), REFUSED["adapt"])
 
@@ -86,15 +83,35 @@ def network(request: pytest.FixtureRequest, place: Path) -> tuple[str, Path]:
 
 
 def few(run: Path, data: Path, out: Path) -> Done:
-    words = ["few_shots.py", str(run), str(data), "-o", str(out), "--shots", "2", "--repeats", "1"]
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(sys, "argv", words)
         patch.setattr(few_shots, "SHOWN", 8)
-        try:
-            few_shots.main()
-        except RadharError as error:
-            return Done(words, error.status, "", f"error: {error}\n")
-    return Done(words, 0, "", "")
+        return radhar("train", data, "-o", out, "--init", run, "--shots", 2, "--repeats", 1)
+
+
+def check_files(name: str, arrays: Path, table: Path, documents: Path, overlay: Path) -> None:
+    """The three files hold the same, with the names of what was found."""
+    with np.load(arrays) as stored:
+        values = stored["joints" if name in JOINTS else "probabilities"]
+        names = stored["joint_names" if name in JOINTS else "classes"].tolist()
+        samples = stored["samples"].tolist()
+    assert len(values) == len(samples) > 2
+    assert values.shape[2 if name in JOINTS else 1] == len(names)
+    read = json.loads(documents.read_text())
+    assert [document["sample"] for document in read] == samples
+    rows = list(csv.DictReader(table.read_text().splitlines()))
+    if name in JOINTS:
+        known = values[0][np.isfinite(values[0]).all((1, 2))]
+        np.testing.assert_allclose([*read[0]["joints"].values()], known.swapaxes(0, 1), rtol=1e-6)
+        assert (rows[0]["joint"], rows[0]["frame"]) == (names[0], "0")
+        assert float(rows[0]["x_m"]) == pytest.approx(values[0, 0, 0, 0], abs=1e-4)
+    else:
+        assert [*read[0]["probabilities"]] == names
+        best = [names[number] for number in values.argmax(1)]
+        assert [document["class"] for document in read] == [row["class"] for row in rows] == best
+        one = [float(rows[0][key]) for key in names]
+        np.testing.assert_allclose(one, values[0], atol=1e-6)
+    with Image.open(overlay) as picture:
+        assert picture.format == "PNG"
 
 
 COMMANDS = (
@@ -128,7 +145,10 @@ def test_every_target_works_or_is_refused_in_a_line(
         case "predict":
             done = radhar("predict", run, other)
         case "predict -o":
-            done = radhar("predict", run, other, "-o", tmp_path / "joints.npz")
+            files = [tmp_path / f"found.{kind}" for kind in ("npz", "csv", "json")]
+            overlay = ("--overlay", tmp_path / "found.png")
+            done = [radhar("predict", run, other, "-o", file, *overlay) for file in files][-1]
+            check_files(name, *files, tmp_path / "found.png")
         case "export":
             done = radhar("export", run, "-o", tmp_path / "network.onnx")
         case "adapt":

@@ -37,6 +37,7 @@ class CloudClip:
         length: Number of frames, those among them that are empty or lost.
         received: Frames that came [f], with points or without; None for those with points.
         joints: Joints [f, 13, 3] of the frames that came, m; None without any.
+        first_number: Number of the first frame, as the file counts.
     """
 
     label: str
@@ -46,6 +47,20 @@ class CloudClip:
     length: int
     received: Index | None = None
     joints: Float | None = None
+    first_number: int = 0
+
+    def check(self, names: str) -> None:
+        """Refuse a clip that is too long, or numbers that are no measurements.
+
+        Raises:
+            CaptureError: Says which; `names` are those of the files.
+        """
+        if not 0 < self.length <= LONGEST_CLIP:
+            raise CaptureError(
+                f"{names}: {self.label} has {self.length} frames; should have 1 to {LONGEST_CLIP}"
+            )
+        if not are_measurements(self.points):
+            raise CaptureError(f"{names}: holds numbers that are no m, m/s or dB")
 
     def frames(self, first: int) -> Iterator[PointFrame]:
         """Yield the frames that came, numbered from `first`, and an empty one at the very end."""
@@ -85,12 +100,7 @@ def write_clips(
     listed, labels, first = [*clips], list[Label](), 0
     names = ", ".join(path.name for path in sources[:3])
     for clip in listed:
-        if not 0 < clip.length <= LONGEST_CLIP:
-            raise CaptureError(
-                f"{names}: {clip.label} has {clip.length} frames; should have 1 to {LONGEST_CLIP}"
-            )
-        if not are_measurements(clip.points):
-            raise CaptureError(f"{names}: holds numbers that are no m, m/s or dB")
+        clip.check(names)
         stop = first + clip.length
         times = {"start_s": round(first * frame_s, 9), "stop_s": round(stop * frame_s, 9)}
         labels.append(Label(label=clip.label, person=clip.person, **times))

@@ -8,6 +8,7 @@ import csv
 import io
 import re
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
 from typing import Annotated
@@ -30,6 +31,7 @@ from radhar_cli.files.plain_text import decode_text
 from radhar_cli.files.untrusted import bytes_of
 from radhar_cli.motion.activities.vocabulary import plain_word
 from radhar_cli.numerics.arrays import Float
+from radhar_cli.readers.captures.array_files import npz_columns, read_npz_array
 from radhar_cli.readers.captures.settings import Above, Text
 
 LONGEST_LOSS = 1000  # frames; a larger step is a recording that begins anew
@@ -45,6 +47,7 @@ NAMES: dict[str, tuple[str, ...]] = {
     "label": LABELS,
     "person": PERSONS,
 }
+FILES = r"[^/]+\.(csv|tsv|txt|npz|json|dat|bin)"
 NEEDED = ("frame", "x", "y", "z", "doppler")
 
 
@@ -72,20 +75,21 @@ def list_takes(folder: Path, settings: PointTableSettings) -> Iterator[Take]:
     for name in settings.columns:
         if name not in NAMES:
             raise CaptureError(f"columns.{name}: there are {', '.join(NAMES)}")
-    for file in find_files(folder, r"[^/]+\.(csv|tsv|txt|json|dat|bin)"):
-        name = as_name(file.inner)
-        *folders, _ = file.inner.split("/")
+    listed = [(file.path, file.inner) for file in find_files(folder, FILES)]
+    for path, inner in [(folder, folder.name)] if folder.is_file() else listed:
+        name = as_name(inner)
+        *folders, _ = inner.split("/")
         split = next((SPLIT_WORDS[f.lower()] for f in folders if f.lower() in SPLIT_WORDS), None)
         classes = [name for name in folders if name.lower() not in SPLIT_WORDS]
         label = settings.label or (classes[-1] if classes else None)
-        if is_point_capture(file.path):
-            write = partial(_import, file.path, label, settings)
+        if is_point_capture(path):
+            write = partial(_import, path, label, settings)
         else:
             settings.require(str(folder))
             if settings.frame_s is None:
                 raise CaptureError(f"{folder}: frame_s is missing (--set frame_s=0.1)")
-            write = partial(write_take, file.path, label, settings)
-        yield Take(name, (file.path,), write, split)
+            write = partial(write_take, path, label, settings)
+        yield Take(name, (path,), write, split)
 
 
 def _import(path: Path, label: str | None, settings: PointTableSettings, out: Path) -> None:
@@ -115,6 +119,27 @@ def write_take(path: Path, label: str | None, settings: PointTableSettings, out:
     Raises:
         CaptureError: columns are missing, or cells are no numbers.
     """
+    clips = read_clips(path, settings, label)
+    for clip in clips:
+        _require_label(path, clip.label or None)
+    assert settings.frame_s is not None  # as `list_takes` found
+    write_clips(out, clips, settings.frame_s, [path])
+
+
+def read_clips(
+    path: Path, settings: PointTableSettings, label: str | None = None
+) -> list[CloudClip]:
+    """Read a table of points: a clip where frames go on, of one label and one person.
+
+    Args:
+        path: CSV, or .npz with an array for each column.
+        settings: Which way axes point, and names of columns.
+        label: Label where no column says it; None leaves it empty.
+
+    Raises:
+        CaptureError: columns or axes are missing, or cells are no numbers.
+    """
+    settings.require(str(path))
     cells = _read_columns(path, settings.columns)
     frame = _numbers(path, "frame", cells["frame"])
     rounded = np.round(frame)
@@ -126,12 +151,11 @@ def write_take(path: Path, label: str | None, settings: PointTableSettings, out:
     more = {
         name: _numbers(path, name, cells[name]) for name in ("intensity", "snr") if name in cells
     }
-    assert settings.axes is not None  # as `list_takes` found
-    assert settings.frame_s is not None
+    assert settings.axes is not None
     points = points_of(
         to_radhar_axes(places, settings.axes), receding, more.get("intensity"), more.get("snr")
     )
-    labels = cells.get("label") or [_require_label(path, label)] * len(numbers)
+    labels = cells.get("label") or [label or ""] * len(numbers)
     persons = cells.get("person") or [settings.person or ""] * len(numbers)
     steps = np.diff(numbers)
     is_cut = (steps < 0) | (steps > LONGEST_LOSS)
@@ -143,8 +167,9 @@ def write_take(path: Path, label: str | None, settings: PointTableSettings, out:
     for rows in np.split(np.arange(len(numbers)), np.flatnonzero(is_cut) + 1):
         first, order = int(rows[0]), (numbers[rows] - numbers[rows[0]]).astype(np.intp)
         person = persons[first] or None
-        clips.append(CloudClip(labels[first], person, points[rows], order, int(order[-1]) + 1))
-    write_clips(out, clips, settings.frame_s, [path])
+        clip = CloudClip(labels[first], person, points[rows], order, int(order[-1]) + 1)
+        clips.append(replace(clip, first_number=int(numbers[first])))
+    return clips
 
 
 def _read_columns(path: Path, renamed: Mapping[str, str]) -> dict[str, list[str]]:
@@ -153,6 +178,8 @@ def _read_columns(path: Path, renamed: Mapping[str, str]) -> dict[str, list[str]
     Raises:
         CaptureError: a column that is needed has no plain name.
     """
+    if path.suffix.lower() == ".npz":
+        return _read_arrays(path, renamed)
     try:
         text = decode_text(bytes_of(path, MAX_TABLE, CaptureError))
     except ValueError as error:
@@ -176,6 +203,23 @@ def _read_columns(path: Path, renamed: Mapping[str, str]) -> dict[str, list[str]
     return {name: [row[place].strip() for row in body] for name, place in columns.items()}
 
 
+def _read_arrays(path: Path, renamed: Mapping[str, str]) -> dict[str, list[str]]:
+    """Cells of the arrays of an .npz, one a column, as texts, by our names.
+
+    Raises:
+        CaptureError: it is damaged, an array is missing, or they differ in length.
+    """
+    names = npz_columns(path)
+    cells = {
+        name: read_npz_array(path, names[place], MAX_TABLE, "iufU").astype(str).tolist()
+        for name, place in _match_names(path, names, renamed).items()
+    }
+    if len({*map(len, cells.values())}) > 1:
+        lengths = ", ".join(f"{name} {len(column)}" for name, column in cells.items())
+        raise CaptureError(f"{path}: arrays should have a number for each point; {lengths}")
+    return cells
+
+
 def _match_names(path: Path, names: Sequence[str], renamed: Mapping[str, str]) -> dict[str, int]:
     """Place of each column by our names."""
     plain = {
@@ -191,7 +235,9 @@ def _match_names(path: Path, names: Sequence[str], renamed: Mapping[str, str]) -
         place = (
             names.index(renamed[name])
             if name in renamed
-            else next((plain[word] for word in known if word in plain), None)
+            else next(
+                (plain[w] for w in known if w in plain and plain[w] not in columns.values()), None
+            )
         )
         if place is not None:
             columns[name] = place

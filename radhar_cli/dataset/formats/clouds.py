@@ -177,7 +177,9 @@ def write_mars(data: Dataset, folder: Path, progress: Progress) -> None:
     """
     _require_points(data, "mars")
     if "skeleton" not in data.products:
-        raise FolderError(f"{data.path}: is measured; mars needs true joints, which it lacks")
+        raise FolderError(
+            f"{data.path}: is measured; mars needs true joints, which it lacks; ti needs none"
+        )
     counts, joints = data.products["points_start"].counts - 1, data.products["skeleton"].shape[2]
     if joints != len(JOINTS):
         raise FolderError(

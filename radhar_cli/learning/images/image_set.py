@@ -164,7 +164,10 @@ class ImageSet:
             available = ", ".join(
                 f"{n} {name}" for n, name in zip(counts, SPLITS, strict=True) if n
             )
-            raise FolderError(f"{self.where}: has no {split} images (it has {available})")
+            raise FolderError(
+                f"{self.where}: has no {split} images (it has {available}); `split` of the config, "
+                "or folders of images, would make them"
+            )
         return numbers
 
     def renamed(self, names: Mapping[str, str | None]) -> "ImageSet":

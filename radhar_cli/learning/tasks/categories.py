@@ -5,6 +5,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any, ClassVar
 
+import numpy as np
 from torch import Tensor
 from torch.nn.functional import cross_entropy
 
@@ -17,11 +18,13 @@ from radhar_cli.learning.run_files import RunError
 from radhar_cli.learning.tasks.predictions import EvalOptions
 from radhar_cli.learning.tasks.task import Evaluation, Names, Task
 from radhar_cli.motion.activities.activity import ACTIVITIES
-from radhar_cli.numerics.arrays import Index
+from radhar_cli.numerics.arrays import Float, Index
 
 
 class Categories(Task):
     """Task whose outputs are logits [B, classes]; classes are matched by name."""
+
+    values_name: ClassVar[str] = "probabilities"
 
     def match(self, images: ImageSet, known: Names, names: Mapping[str, str | None]) -> ImageSet:
         """Images of the classes that a network knows, under its names and numbers."""
@@ -47,6 +50,11 @@ class Categories(Task):
             for number, name in enumerate(images.classes)
             if number not in validated
         ]
+
+    def describe_values(self, values: Float, names: tuple[str, ...], first: int, top: int) -> str:
+        """Likeliest classes and their probabilities, in words."""
+        order = np.argsort(-values, kind="stable")[:top]
+        return ", ".join(f"{names[n]} {100 * values[n]:.1f} %" for n in order)
 
     @abstractmethod
     def occurring_classes(self, images: ImageSet, rows: Index) -> set[int]:

@@ -14,7 +14,7 @@ from radhar_cli.learning.images.image_set import ImageSet
 from radhar_cli.learning.intervals import Groups, interval_in_words
 from radhar_cli.learning.models.outputs import Outputs, OutputShape
 from radhar_cli.learning.tasks.task import Evaluation, Names, Task
-from radhar_cli.numerics.arrays import Index
+from radhar_cli.numerics.arrays import Float, Index
 
 
 class FrameLabels(Task):
@@ -28,6 +28,8 @@ class FrameLabels(Task):
     loss_name: ClassVar[str] = "label-smoothed cross-entropy"
     finds: ClassVar[str] = "labels of frames"
     main_number: ClassVar[str] = "frame_accuracy"
+    values_name: ClassVar[str] = "probabilities"
+    axes: ClassVar[tuple[str, ...]] = ("column",)
 
     def relabel(self, images: ImageSet) -> ImageSet:
         """Images whose classes are those of their columns."""
@@ -89,6 +91,12 @@ class FrameLabels(Task):
     def predict(self, outputs: Tensor) -> Tensor:
         """Probabilities [B, W, classes] of logits."""
         return outputs.softmax(2)
+
+    def describe_values(self, values: Float, names: tuple[str, ...], first: int, top: int) -> str:
+        """Likeliest class of the columns and where it begins, in words."""
+        likeliest = values.argmax(1)
+        starts = [0, *(np.flatnonzero(np.diff(likeliest)) + 1).tolist()]
+        return ", ".join(f"{names[likeliest[start]]} from {first + start}" for start in starts)
 
     def report(self, evaluation: Evaluation) -> dict[str, Any]:
         """Accuracy of frames, F1 of segments, edit score, and labels drawn under the maps."""

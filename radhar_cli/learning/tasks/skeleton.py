@@ -4,6 +4,7 @@ from collections.abc import Mapping
 from dataclasses import replace
 from typing import Any, ClassVar
 
+import numpy as np
 from torch import Tensor
 
 from radhar_cli.errors import FolderError
@@ -13,7 +14,7 @@ from radhar_cli.learning.intervals import Groups, ends_in_words
 from radhar_cli.learning.metrics import NEAR_M
 from radhar_cli.learning.models.outputs import Outputs, OutputShape
 from radhar_cli.learning.tasks.task import Evaluation, Names, Task
-from radhar_cli.numerics.arrays import Index
+from radhar_cli.numerics.arrays import Float, Index
 
 
 class Skeleton(Task):
@@ -29,6 +30,9 @@ class Skeleton(Task):
     outputs_name: ClassVar[str] = "joints"
     names_key: ClassVar[str] = "joints"
     main_number: ClassVar[str] = "mpjpe_cm"
+    values_name: ClassVar[str] = "joints"
+    axes: ClassVar[tuple[str, ...]] = ("frame", "joint")
+    coordinates: ClassVar[tuple[str, ...]] = ("x_m", "y_m", "z_m")
 
     def targets(self, images: ImageSet) -> Targets:
         """Joints [T, joint, 3] of each row, m; NaN after the end of a sample.
@@ -84,6 +88,14 @@ class Skeleton(Task):
     def predict(self, outputs: Tensor) -> Tensor:
         """Joints [B, T, joint, 3], m, as the network gives them."""
         return outputs
+
+    def describe_values(self, values: Float, names: tuple[str, ...], first: int, top: int) -> str:
+        """Mean place of the joints in the first and the last frame, in words."""
+        places = values[np.isfinite(values).all((1, 2))].mean(1)  # [frame, 3]
+        ahead, left, _ = (
+            f"{a:.2f} to {b:.2f} m" for a, b in zip(places[0], places[-1], strict=True)
+        )
+        return f"{len(names)} joints in {len(places)} frames, {ahead} ahead, {left} left"
 
     def report(self, evaluation: Evaluation) -> dict[str, Any]:
         """Errors in cm, by joint, axis and class."""

@@ -83,6 +83,11 @@ class Task(ABC):
     outputs_name: ClassVar[str] = "logits"  # of what an ONNX file gives
     names_key: ClassVar[str] = "classes"  # of the names of its outputs in its metadata
     main_number: ClassVar[str]  # key of the number that a report is summed up by
+    values_name: ClassVar[str] = "values"  # key of its predictions in files
+    # names of the axes of a prediction but the last, such as the frame
+    axes: ClassVar[tuple[str, ...]] = ()
+    # names along the last axis, where the axis before it has the names of the outputs
+    coordinates: ClassVar[tuple[str, ...]] = ()
 
     # The data: what of a set is learned.
 
@@ -158,6 +163,17 @@ class Task(ABC):
     @abstractmethod
     def predict(self, outputs: Tensor) -> Tensor:
         """Predictions [B, ...] of outputs [B, ...], such as probabilities."""
+
+    def describe_values(self, values: Float, names: tuple[str, ...], first: int, top: int) -> str:
+        """Prediction of one input, in words.
+
+        Args:
+            values: as `predict` gives them.
+            names: names of the outputs.
+            first: number of the first frame in its sample.
+            top: number of classes that are named.
+        """
+        return ", ".join(f"{name} {x:.4g}" for name, x in zip(names, values, strict=True))
 
     # Results.
 

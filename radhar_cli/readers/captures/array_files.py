@@ -134,15 +134,26 @@ def check_npz(archive: zipfile.ZipFile) -> dict[str, tuple[tuple[int, ...], str]
     return arrays
 
 
-def read_npz_array(path: Path, name: str, max_bytes: int) -> NDArray[Any]:
-    """Read an array of plain numbers out of an .npz.
+def npz_columns(path: Path) -> list[str]:
+    """Names of the arrays [n] of numbers or texts of an .npz.
+
+    Raises:
+        CaptureError: the file is damaged.
+    """
+    with parser_errors_as_capture_errors(str(path)), zipfile.ZipFile(path) as archive:
+        arrays = check_npz(archive).items()
+    return [name for name, (shape, kind) in arrays if len(shape) == 1 and kind in "iufU"]
+
+
+def read_npz_array(path: Path, name: str, max_bytes: int, kinds: str = "iuf") -> NDArray[Any]:
+    """Read an array of plain numbers, or of other `kinds`, out of an .npz.
 
     Raises:
         CaptureError: the file is damaged, or has no such array of at most `max_bytes`.
     """
     with parser_errors_as_capture_errors(str(path)), zipfile.ZipFile(path) as archive:
         shape, kind = check_npz(archive).get(name, ((), "O"))
-        if kind not in "iuf":
+        if kind not in kinds:
             raise ValueError(f"holds no {name} of plain numbers; pickles are not opened")
         if 8 * prod(shape) > max_bytes:
             raise ValueError(f"{name} has the shape {[*shape]}, too large")

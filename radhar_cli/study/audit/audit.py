@@ -179,7 +179,7 @@ def clouds_of(data: AuditedSet, rows: Index) -> list[Evidence]:
     if not data.has_clouds:
         return []
     with open_dataset(data.where) as opened:
-        return cloud_evidence(opened, rows)
+        return cloud_evidence(opened, rows, data.is_simulated)
 
 
 def draw_rows(data: AuditedSet, max_samples: int, seed: int) -> Index:

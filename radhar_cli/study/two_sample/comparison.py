@@ -14,10 +14,18 @@ import numpy as np
 from PIL import Image
 from scipy.stats import ks_2samp, wasserstein_distance
 
+from radhar_cli.learning.images.sequences import CLOUDS
 from radhar_cli.learning.intervals import wilson
 from radhar_cli.numerics.arrays import Bool, Float, Index
 from radhar_cli.numerics.randomness import TRAINING, stream
 from radhar_cli.processes.progress import Progress
+from radhar_cli.study.two_sample.cloud_statistics import (
+    CHAMFER,
+    centred_places,
+    chamfer_distances,
+    cloud_statistics,
+)
+from radhar_cli.study.two_sample.cloud_statistics import STATISTICS as CLOUD_STATISTICS
 from radhar_cli.study.two_sample.map_statistics import (
     STATISTICS,
     DopplerMap,
@@ -26,6 +34,7 @@ from radhar_cli.study.two_sample.map_statistics import (
 )
 from radhar_cli.study.two_sample.sides import ASSUMED_DB, Pair, Side, open_sides
 
+ALL_STATISTICS = STATISTICS | CLOUD_STATISTICS
 DIFFERENT = 0.02  # of edges, over their span
 FEWEST = 5  # known values of a side, where it has as many maps
 ROUNDING = 1e-9  # of the largest value: a standard deviation below is none
@@ -77,7 +86,7 @@ class Comparison:
 
     def unit(self, statistic: str) -> str:
         """Unit of a statistic, in the axes of these maps."""
-        unit = STATISTICS[statistic].unit
+        unit = ALL_STATISTICS[statistic].unit
         return self.pair.units.get(unit, unit)
 
     def numbers(self) -> dict[str, Any]:
@@ -107,7 +116,7 @@ class Comparison:
             "test": interval([] if comparison.tested is None else [comparison.tested]),
             "statistics": {
                 name: {
-                    "words": STATISTICS[name].words,
+                    "words": ALL_STATISTICS[name].words,
                     "unit": self.unit(name),
                     **difference._asdict(),
                     "simulated": difference.simulated._asdict(),
@@ -166,21 +175,64 @@ def _draw_rows(pair: Pair, name: str, max_maps: int, seed: int) -> tuple[Index, 
 
 
 def _compare_class(name: str, rows: tuple[Index, Index], pair: Pair, seed: int) -> ClassComparison:
-    sides_and_rows = list(zip(pair.sides, rows, strict=True))
-    features = np.array(
-        [[_features(side, row, pair) for row in side_rows] for side, side_rows in sides_and_rows]
-    )
-    names = [key for key, statistic in STATISTICS.items() if pair.power or not statistic.of_power]
+    measure = _cloud_features if pair.clouds else _map_features
+    names, features, tested_columns = measure(rows, pair, seed)
     differences = {key: difference(*features[:, :, column]) for column, key in enumerate(names)}
     order = sorted(differences, key=lambda key: -np.nan_to_num(differences[key].distance, nan=-1))
     correct = correct_predictions(
-        np.concatenate(features),
+        np.concatenate(features[:, :, tested_columns]),
         np.repeat([True, False], rows[0].size),
-        np.concatenate([side.group[side_rows] for side, side_rows in sides_and_rows]),
+        np.concatenate(
+            [side.group[side_rows] for side, side_rows in zip(pair.sides, rows, strict=True)]
+        ),
         int(stream(seed, TRAINING, name=f"compare test {name}").integers(2**31)),
     )
     tested = None if correct is None else (correct, 2 * rows[0].size)
     return ClassComparison(name, rows, {key: differences[key] for key in order}, tested)
+
+
+def _map_features(
+    rows: tuple[Index, Index], pair: Pair, seed: int
+) -> tuple[list[str], Float, slice]:
+    """Names of statistics, features [side, map, D] that begin with them, and the tested columns."""
+    features = np.array(
+        [
+            [_features(side, row, pair) for row in side_rows]
+            for side, side_rows in zip(pair.sides, rows, strict=True)
+        ]
+    )
+    names = [key for key, statistic in STATISTICS.items() if pair.power or not statistic.of_power]
+    return names, features, slice(None)
+
+
+def _cloud_features(
+    rows: tuple[Index, Index], pair: Pair, seed: int
+) -> tuple[list[str], Float, Index]:
+    """Names and values [side, sample, D] of statistics of clouds, and the columns that are tested.
+
+    Statistics that a side never has, as the SNR of some boards, are not tested; nor is the distance
+    to measured clouds, of which a measured one is set beside fewer.
+    """
+    rng, values, places = stream(seed, TRAINING, name="compare clouds"), [], list[list[Float]]()
+    for side, side_rows in zip(pair.sides, rows, strict=True):
+        assert side.clouds is not None
+        products, clouds = side.clouds.data.products, list[Float]()
+        statistics = []
+        for row in side_rows.tolist():
+            points = products[CLOUDS][row]
+            statistics.append(
+                [*cloud_statistics(points, products[f"{CLOUDS}_start"][row]).values()]
+            )
+            clouds.append(centred_places(points, rng))
+        values.append(statistics)
+        places.append(clouds)
+    features, names = np.array(values, float), [*CLOUD_STATISTICS]
+    column = names.index(CHAMFER)
+    for number, clouds in enumerate(places):
+        features[number, :, column] = chamfer_distances(clouds, places[1], same=number == 1)
+    is_known = np.isfinite(features).any(1).all(0)
+    is_known[column] = False
+    return names, features, np.flatnonzero(is_known)
 
 
 def _features(side: Side, row: int, pair: Pair) -> Float:
@@ -294,11 +346,20 @@ def _warnings(pair: Pair, classes: Sequence[ClassComparison]) -> Iterator[str]:
         if side.left_out:
             left_out = ", ".join(f"{name} ({n})" for name, n in side.left_out.items())
             yield f"{side.images.where}: left out, as it alone has them: {left_out}"
+        if pair.clouds:
+            continue
         if not side.masks and side.dynamic_range_db is None:
             yield f"{side.images.where}: dynamic range unknown, {ASSUMED_DB:g} dB assumed"
         if side.images.size != side.size:
             sizes = ["{} x {} px".format(*size) for size in (side.images.size, side.size)]
             yield f"{side.images.where}: images of {sizes[0]} are brought to {sizes[1]}"
+    for comparison in classes:
+        if comparison.tested is None:
+            yield f"{comparison.name}: no test; each side should have two persons or maps"
+    if pair.clouds:
+        if any(np.isnan(c.differences["snr"].distance) for c in classes):
+            yield "the SNR is not compared, as a side does not have it"
+        return
     if simulated.masks != measured.masks:
         kinds = ["masks" if side.masks else "grey levels" for side in pair.sides]
         kinds_in_words = f"{simulated_path} has {kinds[0]}, {measured_path} {kinds[1]}"
@@ -323,5 +384,3 @@ def _warnings(pair: Pair, classes: Sequence[ClassComparison]) -> Iterator[str]:
             ]
             axes_in_words = f"{spans_in_words[0]} simulated, {spans_in_words[1]} measured"
             yield f"{comparison.name}: axes differ, {axes_in_words}"
-        if comparison.tested is None:
-            yield f"{comparison.name}: no test; each side should have two persons or maps"

@@ -58,4 +58,6 @@ def _pictures(comparison: Comparison) -> bytes:
         ]
     units = pair.units
     upwards = f"{'range' if pair.ranges else 'Doppler'} ({units['rows']})"
+    if pair.clouds:
+        upwards = "front views of frames, one after the other (px)"
     return pictures_png(rows, "simulated and measured", f"time ({units['columns']})", upwards)

@@ -1,6 +1,6 @@
 """The two data sets that are compared: images, axes, groups and scales."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -12,6 +12,7 @@ from radhar_cli.errors import FolderError, did_you_mean
 from radhar_cli.learning.images.folder import map_of_folder
 from radhar_cli.learning.images.image_set import ImageSet, Resized
 from radhar_cli.learning.images.opening import is_h5, open_images
+from radhar_cli.learning.images.sequences import CLOUDS, Opened
 from radhar_cli.numerics.arrays import Float, Index, Levels
 
 MAPS = "maps.h5"  # that `radhar process` writes
@@ -34,6 +35,7 @@ class Side:
     group: Index
     dynamic_range_db: float | None  # that levels span; None where it is not known, or of masks
     masks: bool
+    clouds: Opened | None = None  # data set whose clouds are compared; None of maps
 
     def levels(self, row: int) -> Levels:
         """Levels [H, W] of an image."""
@@ -51,6 +53,11 @@ class Pair:
     sides: tuple[Side, Side]
 
     @property
+    def clouds(self) -> bool:
+        """Whether point clouds are compared, not the maps that are drawn of them."""
+        return all(side.clouds is not None for side in self.sides)
+
+    @property
     def ranges(self) -> bool:
         """Whether they hold range-time maps."""
         return any(side.images.map == "rtm" for side in self.sides)
@@ -58,12 +65,14 @@ class Pair:
     @property
     def axes(self) -> bool:
         """Whether edges of the images are used; else all is counted in px."""
-        return all(side.extent is not None for side in self.sides)
+        return not self.clouds and all(side.extent is not None for side in self.sides)
 
     @property
     def power(self) -> bool:
         """Whether there are statistics of power."""
-        return not self.ranges and all(side.dynamic_range_db is not None for side in self.sides)
+        return not (self.ranges or self.clouds) and all(
+            side.dynamic_range_db is not None for side in self.sides
+        )
 
     @property
     def units(self) -> dict[str, str]:
@@ -91,13 +100,14 @@ def open_sides(
     Args:
         simulated: data set, or tree of images.
         measured: data set, or tree of images.
-        map_name: map that is compared; None is the first of each.
+        map_name: map that is compared, or points; None is the first that both have.
         names: {class in one of them: common name, or None to leave it out}.
 
     Raises:
         FolderError: data that cannot be used, of other maps, or without a common class.
     """
     paths = (simulated, measured)
+    map_name = map_name or _common_map(paths)
     image_sets = [_open(path, map_name) for path in paths]
     maps = [images.map for images in image_sets]
     if None not in maps and maps[0] != maps[1]:
@@ -122,6 +132,17 @@ def open_sides(
         for path, images, rows_of in zip(paths, image_sets, rows, strict=True)
     )
     return Pair((first, second))
+
+
+def _common_map(paths: Sequence[Path]) -> str | None:
+    """First map of the first of two dataset.h5 that the other has; None where they have none."""
+    maps = list[tuple[str, ...]]()
+    for path in paths:
+        if not path.exists() or not is_h5(path):
+            return None
+        with open_dataset(path) as data:
+            maps.append(tuple(data.maps))
+    return next((name for name in maps[0] if name in maps[1]), None)
 
 
 def _open(path: Path, map_name: str | None) -> ImageSet:
@@ -161,15 +182,18 @@ def _side(path: Path, images: ImageSet, classes: dict[str, Index], size: tuple[i
     looked_at = compared_rows[:: max(1, compared_rows.size // TWO_VALUED)]
     masks = all(_two_valued(images.pixels.read(int(row))) for row in looked_at)
     group, extent, decibels = np.arange(len(images)), None, None
+    clouds = None
     if images.samples.person is not None:
         group = np.unique(images.samples.person, return_inverse=True)[1]
     if images.map is not None and is_h5(path):
         with open_dataset(path) as data:
             extent, recorded = data.extents(images.map), data.config.recordings
+            if images.map == CLOUDS and CLOUDS in data.products:
+                clouds = Opened(data.path)
             if not masks and (recorded is None or not is_image(recorded.parts[0].file)):
                 decibels = data.config.image.dynamic_range_db
     at_size = replace(images, pixels=Resized(images.pixels, size))
-    return Side(at_size, classes, left_out, size, extent, group, decibels, masks)
+    return Side(at_size, classes, left_out, size, extent, group, decibels, masks, clouds)
 
 
 def _two_valued(levels: Levels) -> bool:

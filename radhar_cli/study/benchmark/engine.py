@@ -169,6 +169,8 @@ class Bench:
         tested = fold.tested
         if step.row == SIMULATION:
             tested = np.sort(np.concatenate([fold.tested for fold in folds]))
+        elif step.row == ADAPTED and self.protocol.find_joints:
+            raise FolderError("adapting without labels is of classes")
         elif fold.why_not:
             raise FolderError(fold.why_not)
         run = self._run_folder(step)
@@ -214,12 +216,11 @@ class Bench:
             train(config, learned, run, quiet)
         elif step.row == TOGETHER:
             train(config, joined([learned, training_part(simulated)]), run, quiet)
+        elif step.row == ADAPTED:
+            self._adapt(self._trained_on_simulation(step.seed), learned, run)
         else:
-            start = self._trained_on_simulation(step.seed)
-            if step.row == ADAPTED:
-                self._adapt(start, learned, run)
-            else:
-                self._tune(start, int(step.row), learned, step, run)
+            labelled = learned.take(draw_labelled(learned, int(step.row), step.seed))
+            self._tune(self._trained_on_simulation(step.seed), labelled, step.seed, run)
 
     def _trained_on_simulation(self, seed: int) -> Path:
         """Run that learned from the simulation alone."""
@@ -235,20 +236,13 @@ class Bench:
         device = choose_device(self.config.device)
         adapt(start, (learned, np.arange(len(learned))), run, device, options)
 
-    def _tune(self, start: Path, shots: int, learned: ImageSet, step: Step, run: Path) -> None:
-        """Fine-tune a run with a few labelled samples a class, half as long as it was trained.
-
-        Raises:
-            FolderError: a class has fewer.
-        """
-        rows = draw_labelled(learned, shots, step.seed)
-        metadata = load_best(start)[0]
+    def _tune(self, start: Path, labelled: ImageSet, seed: int, run: Path) -> None:
+        """Fine-tune a run with a few labelled samples a class, half as long as it was trained."""
         simulated = training_part(self.sides.simulated)
-        labelled = learned.take(rows)
-        images, weights = join_labelled(metadata, labelled, [simulated], MAX_SHOWN)
+        images, weights = join_labelled(load_best(start)[0], labelled, [simulated], MAX_SHOWN)
         config = self.config
         half = {
-            "seed": step.seed,
+            "seed": seed,
             "epochs": -(-config.epochs // 2),
             "warmup_epochs": config.warmup_epochs / 2,
             "data_weights": (weights[0], min(weights[1], 1.0)),

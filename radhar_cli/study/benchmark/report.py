@@ -58,7 +58,8 @@ def _value_in_words(row: RowResult, protocol: Protocol) -> str:
     else:
         words, interval = f"{100 * row.value:.2f} %", interval_in_words(ends, row.over)
         seeds = f"{100 * lowest:.2f} to {100 * highest:.2f}"
-    return f"{words} {interval} of {row.tested}, {len(row.by_seed)} seeds {seeds}"
+    count = len(row.by_seed)
+    return f"{words} {interval} of {row.tested}" + (f", {count} seeds {seeds}" if count > 1 else "")
 
 
 def benchmark_report(options: BenchmarkOptions, results: Sequence[ProtocolResult]) -> Report:

@@ -45,8 +45,6 @@ def find_measured(protocol: Protocol, folder: Path) -> MeasuredSource | None:
     Raises:
         RadharError: the download cannot be read as it is.
     """
-    if not folder.is_dir():
-        raise FolderError(f"{folder}: no such folder; should hold downloads")
     for inner in _folders(folder):
         if _is_prepared(inner, protocol):
             return MeasuredSource(inner, None)
@@ -159,7 +157,7 @@ def open_sides(protocol: Protocol, config: TrainConfig, measured: Path, simulate
         _require_joints(of_measured, of_simulated)
         together = tuple(dict.fromkeys((*names, *of_simulated.classes)))
     else:
-        of_simulated = keep_known_classes(of_simulated, names)
+        of_simulated = _keep_classes(of_simulated, names)
         together = tuple(name for name in names if name in of_simulated.classes)
         if len(together) < 2:
             raise FolderError(
@@ -177,6 +175,21 @@ def open_sides(protocol: Protocol, config: TrainConfig, measured: Path, simulate
         for images in (of_measured, of_simulated)
     )
     return Sides(of_measured, of_simulated, _cut_folds(of_measured, protocol), left_out)
+
+
+def _keep_classes(simulated: ImageSet, names: tuple[str, ...]) -> ImageSet:
+    """Simulated samples of the classes that are measured.
+
+    Raises:
+        FolderError: there are none.
+    """
+    try:
+        return keep_known_classes(simulated, names)
+    except FolderError:
+        raise FolderError(
+            f"{simulated.where}: has the classes {', '.join(simulated.classes)}; should have some "
+            f"of {', '.join(names)}"
+        ) from None
 
 
 def _map_of(path: Path, protocol: Protocol) -> str | None:

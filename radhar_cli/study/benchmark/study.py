@@ -9,7 +9,7 @@ from radhar_cli.config.data_set import Config
 from radhar_cli.config.reading import load_section
 from radhar_cli.dataset.estimate import Estimate, estimate
 from radhar_cli.dataset.layout import Rows
-from radhar_cli.errors import RadharError
+from radhar_cli.errors import FolderError, RadharError
 from radhar_cli.learning.settings import TrainConfig
 from radhar_cli.processes.progress import NO_PROGRESS, Progress
 from radhar_cli.study.benchmark.engine import SIMULATION, Bench, RowResult
@@ -80,22 +80,32 @@ class FoundProtocol(NamedTuple):
     why_not: str
 
 
-def find_protocols(options: BenchmarkOptions) -> Iterator[FoundProtocol]:
-    """Yield the protocols that are asked for, with their measured data sets.
+def find_protocols(options: BenchmarkOptions) -> list[FoundProtocol]:
+    """Find the measured data sets of the protocols that are asked for.
 
     Raises:
-        RadharError: there is no such folder or protocol.
+        RadharError: there is no such folder or protocol, or no data set of any.
     """
-    for name, protocol in choose_protocols(options.protocols).items():
-        try:
-            source, why_not = find_measured(protocol, options.folder), ""
-        except RadharError as error:
-            if not options.folder.is_dir():
-                raise
-            source, why_not = None, str(error)
-        if source is None and not why_not:
-            why_not = f"{options.folder}: holds no {protocol.recipe} {protocol.part}".rstrip()
-        yield FoundProtocol(name, protocol, source, why_not)
+    for path, holds in ((options.folder, "downloads"), (options.simulated, "simulated samples")):
+        if path is not None and not path.exists():
+            raise FolderError(f"{path}: no such folder; should hold {holds}")
+    found = [
+        _find_protocol(name, protocol, options.folder)
+        for name, protocol in choose_protocols(options.protocols).items()
+    ]
+    if all(one.source is None for one in found):
+        raise FolderError("; ".join(one.why_not for one in found))
+    return found
+
+
+def _find_protocol(name: str, protocol: Protocol, folder: Path) -> FoundProtocol:
+    """Find the measured data set of a protocol below a folder."""
+    try:
+        source = find_measured(protocol, folder)
+    except RadharError as error:
+        return FoundProtocol(name, protocol, None, str(error))
+    why_not = "" if source else f"{folder}: holds no {protocol.recipe} {protocol.part}".rstrip()
+    return FoundProtocol(name, protocol, source, why_not)
 
 
 def run_benchmark(options: BenchmarkOptions, progress: Progress) -> Iterator[ProtocolResult]:
@@ -154,8 +164,9 @@ def plan_lines(options: BenchmarkOptions) -> Iterator[str]:
         per_seed = sum(1 if row == SIMULATION else folds for row in options.rows)
         training = options.training(protocol)
         yield (
-            f"  {training.model}, {training.epochs} epochs: at most {options.seeds * per_seed} "
-            f"trainings ({len(options.rows)} rows, {options.seeds} seeds, {folds} parts)"
+            f"  {training.model}: at most {options.seeds * per_seed} trainings (rows: "
+            f"{len(options.rows)}, seeds: {options.seeds}, parts: at most {folds}, epochs: "
+            f"{training.epochs})"
         )
 
 

@@ -19,7 +19,7 @@ COMMANDS = {
     DATA_SETS: ("demo", "generate", "verify", "audit", "merge", "convert"),
     "Look": ("simulate", "motion", "preview", "view", "inspect"),
     "Real radars": ("prepare", "import", "process", "fit", "compare"),
-    "Learn": ("train", "eval", "predict", "adapt", "export"),
+    "Learn": ("train", "eval", "predict", "adapt", "export", "benchmark"),
     "Settings": ("tradeoff", "limits"),
 }
 MODULES = {"import": "import_", "eval": "evaluate"}  # and functions; of the others as the command

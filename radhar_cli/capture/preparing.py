@@ -17,9 +17,16 @@ from radhar_cli.capture.point_recording import PointRecording, is_point_recordin
 from radhar_cli.capture.recipes.recipe import SetRecipe, Take
 from radhar_cli.capture.recipes.registry import find_recipe
 from radhar_cli.capture.recording import Label, Recording
-from radhar_cli.capture.windows import COLUMNS, MAX_MANIFEST
-from radhar_cli.config.data_set import Config, ConfigOfRecordings
+from radhar_cli.capture.windows import (
+    COLUMNS,
+    MAX_MANIFEST,
+    WindowFactory,
+    warnings_of,
+    with_recordings,
+)
+from radhar_cli.config.data_set import AnyConfig, Config, ConfigOfRecordings
 from radhar_cli.config.reading import validated, with_overrides
+from radhar_cli.dataset.build import BuildOutcome, build
 from radhar_cli.dataset.folder import folder_lock, refuse_foreign_files, stored_identity
 from radhar_cli.dataset.layout import RECORDINGS, WORK
 from radhar_cli.dataset.workers import run_tasks
@@ -31,6 +38,7 @@ from radhar_cli.readers.untrusted_hdf5 import remember, try_files
 from radhar_cli.schema.section import Section
 
 MANIFEST, ORIGIN = "manifest.csv", "origin.json"
+SHOWN = 5  # of what is left out
 VALIDATION_OF = 5  # every so many recordings of training validate, where the authors name none
 
 
@@ -145,6 +153,45 @@ def prepare_recordings(
             f"{len(takes)} of the {recipe.count} recordings of {preparation.name} are there"
         )
     return Prepared(recordings / MANIFEST, len(takes), len(missing), left_out, tuple(notes))
+
+
+class PreparedDataset(NamedTuple):
+    """Data set of a download: its recordings, its config, and the result of its build."""
+
+    recordings: Prepared
+    config: AnyConfig
+    outcome: BuildOutcome
+
+
+def prepare_dataset(
+    preparation: Preparation, out: Path, jobs: int, progress: Progress, overwrite: bool = False
+) -> PreparedDataset:
+    """Make the data set of a download, or resume it.
+
+    Args:
+        out: Folder of the data set.
+        jobs: Number of processes.
+        progress: Is told of recordings, samples, and what is left out.
+        overwrite: Start over where the folder holds another download.
+
+    Raises:
+        CaptureError: the folder is not that data set, or nothing of it can be read.
+        FolderError: the output folder holds something else, or another run writes there.
+    """
+    prepared = prepare_recordings(preparation, out, jobs, progress, overwrite)
+    for why in prepared.left_out[:SHOWN]:
+        progress.say(f"warning: left out: {why}")
+    if (more := len(prepared.left_out) - SHOWN) > 0:
+        progress.say(f"warning: {more} more are left out")
+    for note in prepared.notes:
+        progress.say(note)
+    config = with_recordings(preparation.config, prepared.manifest)
+    for warning in warnings_of(config):
+        progress.say(f"warning: {warning}")
+    manifest = prepared.manifest
+    factory = WindowFactory(manifest if manifest.is_dir() else manifest.parent)
+    outcome = build(config, out, jobs, progress, overwrite, None, factory)
+    return PreparedDataset(prepared, config, outcome)
 
 
 def _require_takes(listed: Iterable[Take], preparation: Preparation) -> list[Take]:

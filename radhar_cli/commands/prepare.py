@@ -10,8 +10,6 @@ from radhar_cli.commands.tell import counted, report, tell
 from radhar_cli.errors import ConfigError
 from radhar_cli.processes import interrupts
 
-SHOWN = 5  # of what is left out
-
 
 def prepare(
     name: Annotated[
@@ -56,35 +54,20 @@ def prepare(
     if folder is None or out is None:
         raise ConfigError(f"should be: radhar prepare {name} FOLDER -o DATASET")
     with resumable(f"what is finished in {out}"):
-        from radhar_cli.capture.preparing import prepare_recordings, read_preparation
-        from radhar_cli.capture.windows import WindowFactory, warnings_of, with_recordings
+        from radhar_cli.capture.preparing import prepare_dataset, read_preparation
         from radhar_cli.commands.terminal import BarProgress, print_outcome
-        from radhar_cli.dataset.build import build
         from radhar_cli.dataset.workers import cores
         from radhar_cli.processes.worker_process import prepare_process
 
         prepare_process()
         preparation = read_preparation(name, folder, set_ or [])
-        processes = jobs or cores()
         with BarProgress() as bars:
-            prepared = prepare_recordings(preparation, out, processes, bars, overwrite)
-            for why in prepared.left_out[:SHOWN]:
-                bars.say(f"warning: left out: {why}")
-            if (more := len(prepared.left_out) - SHOWN) > 0:
-                bars.say(f"warning: {more} more are left out")
-            for note in prepared.notes:
-                bars.say(note)
-            config = with_recordings(preparation.config, prepared.manifest)
-            for warning in warnings_of(config):
-                bars.say(f"warning: {warning}")
-            manifest = prepared.manifest
-            factory = WindowFactory(manifest if manifest.is_dir() else manifest.parent)
-            outcome = build(config, out, processes, bars, overwrite, None, factory)
+            made = prepare_dataset(preparation, out, jobs or cores(), bars, overwrite)
         interrupts.complete(str(out))
-        if prepared.takes:
+        if (prepared := made.recordings).takes:
             recordings = counted(prepared.takes, "recording")
             tell(f"{recordings}, {prepared.new} new, {len(prepared.left_out)} left out")
-        print_outcome(config, outcome)
+        print_outcome(made.config, made.outcome)
 
 
 def _list_recipes() -> None:

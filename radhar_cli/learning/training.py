@@ -31,7 +31,7 @@ from radhar_cli.learning.tasks.task import create_task
 from radhar_cli.learning.training_set import describe_run, open_training_set, training_warnings
 from radhar_cli.numerics.arrays import Index
 from radhar_cli.numerics.randomness import TRAINING, stream
-from radhar_cli.processes.progress import Messages, NoProgress
+from radhar_cli.processes.progress import Messages, NoProgress, Progress
 from radhar_cli.processes.worker_process import keep_memory
 
 STATISTICS_IMAGES = 2048  # from which batch norm of averaged weights has its statistics
@@ -65,6 +65,21 @@ class NoTrainingProgress(NoProgress):
 
     def epoch_done(self, row: Epoch, best: bool) -> None:
         """Nobody sees it."""
+
+
+class QuietTraining(NoTrainingProgress):
+    """Progress of a training that is part of a study: silent, but it can be interrupted."""
+
+    def __init__(self, progress: Progress) -> None:
+        self._progress = progress
+
+    def advance(self, count: int) -> None:
+        """Give the user's interrupt its turn."""
+        self._progress.advance(0)
+
+    def step(self, loss: float, accuracy: float) -> None:
+        """Give the user's interrupt its turn."""
+        self._progress.advance(0)
 
 
 @dataclass(frozen=True)

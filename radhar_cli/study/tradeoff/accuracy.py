@@ -36,7 +36,7 @@ from radhar_cli.learning.images.scan import content_hash
 from radhar_cli.learning.machine import choose_device
 from radhar_cli.learning.run_folder import load_best
 from radhar_cli.learning.settings import TrainConfig
-from radhar_cli.learning.training import NoTrainingProgress, train
+from radhar_cli.learning.training import QuietTraining, train
 from radhar_cli.learning.training_set import open_training_set
 from radhar_cli.processes.progress import Progress
 from radhar_cli.study.tradeoff.samples import Scenes
@@ -64,21 +64,6 @@ class SeedAccuracy:
     # on images of the config as it is; None where they are not alike
     on_default: Annotated[float, Field(ge=0, le=1)] | None
     on_own: Annotated[float, Field(ge=0, le=1)]  # on images of the setting
-
-
-class _Quiet(NoTrainingProgress):
-    """Progress of a part: silent, but its work can be interrupted."""
-
-    def __init__(self, progress: Progress) -> None:
-        self._progress = progress
-
-    def advance(self, count: int) -> None:
-        """Give the user's interrupt its turn."""
-        self._progress.advance(0)
-
-    def step(self, loss: float, accuracy: float) -> None:
-        """Give the user's interrupt its turn."""
-        self._progress.advance(0)
 
 
 @dataclass(frozen=True)
@@ -189,7 +174,7 @@ class AccuracyStudy:
         """Make a data set, unless it is there; return its folder."""
         folder = self._data(part)
         if not (folder / DATASET).exists():
-            build(part, folder, 1, _Quiet(self.progress))
+            build(part, folder, 1, QuietTraining(self.progress))
         return folder
 
     def _train_config(self, number: int) -> TrainConfig:
@@ -202,7 +187,7 @@ class AccuracyStudy:
         content = content_hash(images, np.arange(len(images)))
         run = self.folder / "runs" / _digest(f"{content} {settings.model_dump_json()}")
         if not (run / run_files.METRICS).exists():
-            train(settings, images, run, _Quiet(self.progress))
+            train(settings, images, run, QuietTraining(self.progress))
         return run
 
     def _is_alike(self, setting: Overrides, number: int) -> bool:

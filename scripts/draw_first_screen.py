@@ -10,15 +10,16 @@ import argparse
 from pathlib import Path
 from typing import Any
 
-import matplotlib
-import matplotlib.pyplot as plt
 import numpy as np
+from draw_pictures import LARGE, save_picture
+from matplotlib import rc_context
 from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection
-from PIL import Image
 
 from radhar_cli.config import load_config
+from radhar_cli.figures.page import page
 from radhar_cli.figures.sides import limbs
+from radhar_cli.figures.style import RADAR, joint_colours
 from radhar_cli.processing.image import decibels
 from radhar_cli.radar.fmcw import SPEED_OF_LIGHT
 from radhar_cli.scene.single.simulate import Simulation, simulate
@@ -41,7 +42,6 @@ ACTIVITIES = {
     "punching": (0.6, 1.8, 3.0, 4.2, 5.4),
 }
 METRES_A_SECOND = 0.55  # of the axis of the bodies
-RIGHT, LEFT, MIDDLE = "#00875a", "#e08a00", "0.25"
 DYNAMIC_RANGE_DB = 45.0
 SECONDS = 6.0
 SPEEDS_MPS = (-3.0, 5.0)
@@ -49,30 +49,18 @@ SPEEDS_MPS = (-3.0, 5.0)
 
 def draw(out: Path) -> None:
     """Write a figure with a column for every activity: the body above, its map below."""
-    plt.rcParams.update({"font.size": 13, "axes.titlesize": 16, "axes.labelsize": 14})
-    figure, axes = plt.subplots(
-        2,
-        len(ACTIVITIES),
-        figsize=(13, 5.8),
-        height_ratios=(1, 1.8),
-        sharex="row",
-        sharey="row",
-        layout="constrained",
-    )
+    figure = page(13, 5.8)
+    axes = figure.subplots(2, len(ACTIVITIES), height_ratios=(1, 1.8), sharex="row", sharey="row")
     for body, panel, activity in zip(*axes, ACTIVITIES, strict=True):
         simulation = simulate(load_config(CONFIG, SETTINGS), activity, maps=("stft",))
         drawn = draw_speeds(panel, simulation)
         draw_body(body, simulation, ACTIVITIES[activity])
         body.set_title(activity.replace("_", " "))
         panel.set_xlabel("time (s)")
-    axes[0, 0].text(0, 1.8, "\N{LEFTWARDS ARROW} radar", color="tab:red")
+    axes[0, 0].text(0, 1.8, "\N{LEFTWARDS ARROW} radar", color=RADAR)
     axes[1, 0].set_ylabel("approaching (m/s)")
     figure.colorbar(drawn, ax=axes[1], pad=0.01, label="power (dB)")
-    figure.savefig(out, dpi=100)
-    with Image.open(out) as picture:
-        whole = picture.convert("RGB")
-    whole.save(out, optimize=True)
-    print(out)
+    save_picture(figure, out, 100, "python scripts/draw_first_screen.py")
 
 
 def draw_speeds(panel: Axes, simulation: Simulation) -> Any:
@@ -90,12 +78,6 @@ def draw_speeds(panel: Axes, simulation: Simulation) -> Any:
     )
     panel.set(xlim=(0, SECONDS), ylim=SPEEDS_MPS)
     return drawn
-
-
-def joint_colours(names: tuple[str, ...]) -> list[str]:
-    """Colours of bones, right, left or middle, by the names of the joints at their ends."""
-    sides = {"right": RIGHT, "left": LEFT}
-    return [sides.get(name.partition("_")[0], MIDDLE) for name in names]
 
 
 def draw_body(panel: Axes, simulation: Simulation, instants: tuple[float, ...]) -> None:
@@ -119,8 +101,9 @@ def main() -> None:
         description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
     )
     parser.add_argument("-o", "--out", type=Path, default=ROOT / "docs/images/first_screen.png")
-    matplotlib.use("Agg")
-    draw(parser.parse_args().out)
+    out = parser.parse_args().out
+    with rc_context(LARGE):
+        draw(out)
 
 
 if __name__ == "__main__":

@@ -56,6 +56,7 @@ MIN_S = 0.5  # shortest duration of the longest recording
 PART_S = 4.0  # shortest part of a longer recording; none is twice as long
 HANN_GAIN = 0.5**2 + 2 * 0.25**2  # gain of white noise in hann_in_range
 QUARTILE = 0.25
+LEAST_IN_BARS = 6  # recordings whose SNRs a histogram shows
 SLOW_MPS = 0.15  # slower movement does not count as a person's
 FAST_SHARE = 0.02  # least share of a person's power that moves faster
 REACH_M = 1.2  # limbs from the torso
@@ -437,9 +438,15 @@ def draw(fit: Fit, path: Path) -> None:
         )
         floor.set(xlabel="range (m)", ylabel="noise floor (dB over its median)")
         floor.legend()
-    snr = fit.snr_db
-    snrs.hist(snr, bins=min(20, max(3, snr.size // 2)), label="of each recording")
-    snrs.axvline(snr.mean(), color="k", linestyle="--", label="mean")
-    snrs.set(xlabel="SNR of a raw sample (dB)", ylabel="recordings")
+    snr, quantity = fit.snr_db, "SNR of a raw sample (dB)"
+    if snr.size < LEAST_IN_BARS:
+        snrs.plot(np.arange(snr.size) + 1, snr, "o", label="of each recording")
+        snrs.axhline(snr.mean(), color="k", linestyle="--", label="mean")
+        snrs.set(xlabel="recording", ylabel=quantity, xticks=np.arange(snr.size) + 1)
+        snrs.set_xlim(0.5, snr.size + 0.5)
+    else:
+        snrs.hist(snr, bins=min(20, snr.size // 2), label="of each recording")
+        snrs.axvline(snr.mean(), color="k", linestyle="--", label="mean")
+        snrs.set(xlabel=quantity, ylabel="recordings")
     snrs.legend()
     write_figure(figure, path, 90)

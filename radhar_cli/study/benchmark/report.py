@@ -40,10 +40,10 @@ def result_lines(result: ProtocolResult) -> list[str]:
 def describe_protocol(result: ProtocolResult) -> str:
     """Data sets, target and split of a protocol, in words."""
     protocol = result.protocol
-    what = "joints" if protocol.find_joints else f"{len(result.classes)} classes"
+    target = "joints" if protocol.find_joints else f"{len(result.classes)} classes"
     left_out = f" ({len(result.left_out)} left out)" if result.left_out else ""
     split = "persons in turn" if protocol.split == PERSONS else "the authors' test part"
-    return f"{protocol.map} to {what}{left_out}, {split}; simulated: {result.simulated}"
+    return f"{protocol.map} to {target}{left_out}, {split}; simulated: {result.simulated}"
 
 
 def _value_in_words(row: RowResult, protocol: Protocol) -> str:

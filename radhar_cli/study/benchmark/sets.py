@@ -132,7 +132,7 @@ class Fold(NamedTuple):
 
 
 @dataclass(frozen=True)
-class Sides:
+class BothSets:
     """Measured and simulated samples under one list of classes."""
 
     measured: ImageSet
@@ -141,7 +141,7 @@ class Sides:
     left_out: tuple[str, ...]  # measured classes that the simulation lacks
 
 
-def open_sides(protocol: Protocol, config: TrainConfig, measured: Path, simulated: Path) -> Sides:
+def open_both(protocol: Protocol, config: TrainConfig, measured: Path, simulated: Path) -> BothSets:
     """Open the two data sets of a protocol; classes that either lacks are left out.
 
     Raises:
@@ -174,7 +174,7 @@ def open_sides(protocol: Protocol, config: TrainConfig, measured: Path, simulate
         )
         for images in (of_measured, of_simulated)
     )
-    return Sides(of_measured, of_simulated, _cut_folds(of_measured, protocol), left_out)
+    return BothSets(of_measured, of_simulated, _cut_folds(of_measured, protocol), left_out)
 
 
 def _keep_classes(simulated: ImageSet, names: tuple[str, ...]) -> ImageSet:
@@ -232,7 +232,7 @@ def _cut_folds(measured: ImageSet, protocol: Protocol) -> tuple[Fold, ...]:
     return tuple(Fold(every[~is_tested], every[is_tested]) for is_tested in masks)
 
 
-def learning_set(sides: Sides, fold: Fold, config: TrainConfig) -> ImageSet:
+def learning_set(both: BothSets, fold: Fold, config: TrainConfig) -> ImageSet:
     """Measured samples that may be learned from, with parts that train and validate.
 
     The authors' validation part is kept; else a share of each class is cut off.
@@ -240,10 +240,10 @@ def learning_set(sides: Sides, fold: Fold, config: TrainConfig) -> ImageSet:
     Raises:
         FolderError: a class has too few.
     """
-    images = sides.measured.take(fold.learned)
+    images = both.measured.take(fold.learned)
     split = images.samples.split
     has_parts = split is not None and {*np.unique(split).tolist()} == {0, 1}
-    if not has_parts or len(sides.folds) > 1:
+    if not has_parts or len(both.folds) > 1:
         images = replace(images, samples=replace(images.samples, split=None))
     return images.cut(config.validation_share, config.seed)
 

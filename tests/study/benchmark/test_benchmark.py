@@ -17,7 +17,7 @@ from radhar_cli.learning.images.opening import open_inputs
 from radhar_cli.study.benchmark import engine
 from radhar_cli.study.benchmark.engine import draw_labelled, joint_errors, parse_rows
 from radhar_cli.study.benchmark.protocols import PERSONS, PROTOCOLS
-from radhar_cli.study.benchmark.sets import find_measured, learning_set, open_sides, training_part
+from radhar_cli.study.benchmark.sets import find_measured, learning_set, open_both, training_part
 from radhar_cli.study.benchmark.study import BenchmarkOptions
 
 PAGE = ROOT / "docs/guide/benchmark_simulators.md"
@@ -123,18 +123,18 @@ def test_joints_are_found_across_persons(downloads: Path, theirs: Path, tmp_path
 def test_nobody_who_is_tested_is_learned_from(theirs: Path) -> None:
     protocol, options = PROTOCOLS["mars"], BenchmarkOptions(theirs, theirs, (), 1)
     config = options.training(protocol)
-    sides = open_sides(protocol, config, theirs / "mars", theirs / "mars")
-    persons = sides.measured.samples.person
+    both = open_both(protocol, config, theirs / "mars", theirs / "mars")
+    persons = both.measured.samples.person
     assert persons is not None
-    assert len(sides.folds) == 3
-    for fold in sides.folds:
+    assert len(both.folds) == 3
+    for fold in both.folds:
         tested = {persons[row] for row in fold.tested}
-        learned = learning_set(sides, fold, config).samples.person
+        learned = learning_set(both, fold, config).samples.person
         assert learned is not None
         assert len(tested) == 1
         assert not tested & set(learned)
-    every = np.sort(np.concatenate([fold.tested for fold in sides.folds]))
-    assert every.tolist() == list(range(len(sides.measured)))
+    every = np.sort(np.concatenate([fold.tested for fold in both.folds]))
+    assert every.tolist() == list(range(len(both.measured)))
 
 
 def test_fewer_labels_are_among_more(theirs: Path) -> None:
@@ -160,8 +160,8 @@ def test_a_shift_of_the_body_is_no_error_about_the_hip() -> None:
     true = rng.normal(size=(2, 4, 13, 3))
     true[0, 3] = np.nan  # a frame without joints
     true[1] = np.nan  # a sequence without any
-    found = np.nan_to_num(true) + [0.03, 0.04, 0]
-    errors = joint_errors(found, true, 8)
+    estimated = np.nan_to_num(true) + np.array([0.03, 0.04, 0])
+    errors = joint_errors(estimated, true, 8)
     assert errors["mpjpe_cm"][0] == pytest.approx(5)
     assert errors["root_relative_cm"][0] == pytest.approx(0, abs=1e-9)
     assert np.isnan(errors["mpjpe_cm"][1])

@@ -34,7 +34,7 @@ from radhar_cli.numerics.arrays import Float, Index
 from radhar_cli.numerics.randomness import TRAINING, stream
 from radhar_cli.processes.progress import Progress
 from radhar_cli.study.benchmark.protocols import Protocol
-from radhar_cli.study.benchmark.sets import Fold, BothSets, learning_set, training_part
+from radhar_cli.study.benchmark.sets import BothSets, Fold, learning_set, training_part
 
 SIMULATION, ADAPTED, MEASURED, TOGETHER = "simulation", "adapted", "measured", "together"
 ROWS = (SIMULATION, ADAPTED, "1", "5", "10", "20", MEASURED, TOGETHER)

@@ -39,16 +39,22 @@ class MeasuredSource:
     recordings: int | None = None  # in the download
 
 
-def find_measured(protocol: Protocol, folder: Path) -> MeasuredSource | None:
+def find_measured(protocol: Protocol, folder: Path, out: Path) -> MeasuredSource | None:
     """Find the measured data set of a protocol below a folder; None where it is not there.
+
+    Args:
+        protocol: the protocol.
+        folder: folder of downloads and prepared data sets.
+        out: folder of the benchmark, which is passed over.
 
     Raises:
         RadharError: the download cannot be read as it is.
     """
-    for inner in _folders(folder):
+    folders = [*_folders(folder, out)]
+    for inner in folders:
         if _is_prepared(inner, protocol):
             return MeasuredSource(inner, None)
-    for inner in _folders(folder) if protocol.part else [folder]:
+    for inner in folders if protocol.part else [folder]:
         if protocol.part and inner.name.lower() != protocol.part.lower():
             continue
         preparation = read_preparation(protocol.recipe, inner, protocol.preparing)
@@ -59,8 +65,8 @@ def find_measured(protocol: Protocol, folder: Path) -> MeasuredSource | None:
     return None
 
 
-def _folders(folder: Path) -> Iterator[Path]:
-    """Yield a folder and those below it, the upper ones first; no link is followed."""
+def _folders(folder: Path, without: Path) -> Iterator[Path]:
+    """Yield a folder and those below it but one, the upper ones first; no link is followed."""
     waiting, count = [(folder, 0)], 0
     while waiting and count < MAX_FOLDERS:
         inner, depth = waiting.pop(0)
@@ -68,7 +74,8 @@ def _folders(folder: Path) -> Iterator[Path]:
         yield inner
         if depth < DEEPEST and not (inner / RECORDINGS / ORIGIN).exists():
             children = sorted(inner.iterdir())
-            waiting += [(p, depth + 1) for p in children if p.is_dir() and not p.is_symlink()]
+            inner_folders = [p for p in children if p.is_dir() and not p.is_symlink()]
+            waiting += [(p, depth + 1) for p in inner_folders if p.absolute() != without.absolute()]
 
 
 def _is_prepared(folder: Path, protocol: Protocol) -> bool:

@@ -90,7 +90,7 @@ def find_protocols(options: BenchmarkOptions) -> list[FoundProtocol]:
         if path is not None and not path.exists():
             raise FolderError(f"{path}: no such folder; should hold {holds}")
     choices = [
-        _find_protocol(name, protocol, options.folder)
+        _find_protocol(name, protocol, options)
         for name, protocol in choose_protocols(options.protocols).items()
     ]
     if all(choice.source is None for choice in choices):
@@ -98,10 +98,11 @@ def find_protocols(options: BenchmarkOptions) -> list[FoundProtocol]:
     return choices
 
 
-def _find_protocol(name: str, protocol: Protocol, folder: Path) -> FoundProtocol:
-    """Find the measured data set of a protocol below a folder."""
+def _find_protocol(name: str, protocol: Protocol, options: BenchmarkOptions) -> FoundProtocol:
+    """Find the measured data set of a protocol."""
+    folder = options.folder
     try:
-        source = find_measured(protocol, folder)
+        source = find_measured(protocol, folder, options.out)
     except RadharError as error:
         return FoundProtocol(name, protocol, None, str(error))
     why_not = "" if source else f"{folder}: holds no {protocol.recipe} {protocol.part}".rstrip()

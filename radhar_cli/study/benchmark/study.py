@@ -23,6 +23,7 @@ from radhar_cli.study.benchmark.sets import (
     simulation_config,
 )
 
+RADHAR = "radhar"  # simulator, where no other one is given
 TRIAL_S = 6.0  # of timing samples, in a dry run
 
 
@@ -112,7 +113,7 @@ def _find_protocol(name: str, protocol: Protocol, options: BenchmarkOptions) -> 
 def run_benchmark(options: BenchmarkOptions, progress: Progress) -> Iterator[ProtocolResult]:
     """Yield the rows of every protocol; what an earlier call has trained is not trained again."""
     for choice in find_protocols(options):
-        result = ProtocolResult(choice.name, choice.protocol, str(options.simulated or "radhar"))
+        result = ProtocolResult(choice.name, choice.protocol, str(options.simulated or RADHAR))
         if choice.source is None:
             yield replace(result, why_not=choice.why_not)
             continue

@@ -23,7 +23,7 @@ import numpy as np
 import pytest
 import yaml
 from capture.dca1000_file import Radar, body, echo, words
-from capture.recipes.published_files import write_mars
+from capture.recipes.published_files import write_mars, write_radhar
 from capture.uart_bytes import demo_packet, floats, side_info
 from helpers.boards import CFG
 from helpers.capture_files import write_all
@@ -59,6 +59,7 @@ OPTIONS_ONLY = {
 # Pages whose commands take seconds of a processor, for `make test-all`.
 LONG = {
     "audit.md",
+    "benchmark_simulators.md",
     "board_profiles.md",
     "boards.md",
     "frames.md",
@@ -87,6 +88,7 @@ SMALL = {
     "prepare": {"--jobs": "1"},
     "simulate": {"--set": "duration_s=3"},
     "limits": {"--minutes": "0.05"},
+    "benchmark": {"--seeds": "1", "--epochs": "1", "--per-class": "3", "--rows": "simulation,1"},
 }
 # What SLURM would say.
 ENVIRONMENT = {
@@ -258,6 +260,16 @@ def point_table(path: Path) -> None:
         place.write_text("\n".join(["frame,x,y,z,doppler,label", *rows, ""]))
 
 
+def simulated_tables(path: Path) -> None:
+    """A point a frame of two seconds at 30 Hz, of several people of two classes."""
+    for label in ("boxing", "walk"):
+        (path / label).mkdir(parents=True)
+        for number in range(1, 9):
+            rows = [f"{n},0.5,2,0.25,{number / 10}" for n in range(61)]
+            text = "\n".join(["frame,x,y,z,doppler", *rows, ""])
+            (path / label / f"{number}.csv").write_text(text)
+
+
 FILES: dict[str, dict[str, Callable[[Path], object]]] = {
     "CONTRIBUTING.md": {
         f".venv/bin/{name}": idle for name in ("python", "ruff", "mypy", "pre-commit")
@@ -279,6 +291,7 @@ FILES: dict[str, dict[str, Callable[[Path], object]]] = {
     },
     "captures.md": {"walk.wav": lambda path: write_all(path.parent)},
     "prepare.md": {"downloads/MARS": write_mars, "captures/walking/anna.csv": point_table},
+    "benchmark_simulators.md": {"downloads/RadHAR": write_radhar, "theirs": simulated_tables},
     "points.md": {
         "walk.bin": dump,
         "replay_1.json": replay,

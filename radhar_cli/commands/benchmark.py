@@ -44,7 +44,7 @@ def benchmark(
     ] = None,
     per_class: Annotated[
         int | None,
-        typer.Option(min=2, help="Simulated samples of a class. The default is the config's."),
+        typer.Option(min=3, help="Simulated samples of a class. The default is the config's."),
     ] = None,
     jobs: Annotated[
         int | None,

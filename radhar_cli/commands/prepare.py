@@ -62,12 +62,12 @@ def prepare(
         prepare_process()
         preparation = read_preparation(name, folder, set_ or [])
         with BarProgress() as bars:
-            made = prepare_dataset(preparation, out, jobs or cores(), bars, overwrite)
+            dataset = prepare_dataset(preparation, out, jobs or cores(), bars, overwrite)
         interrupts.complete(str(out))
-        if (prepared := made.recordings).takes:
+        if (prepared := dataset.recordings).takes:
             recordings = counted(prepared.takes, "recording")
             tell(f"{recordings}, {prepared.new} new, {len(prepared.left_out)} left out")
-        print_outcome(made.config, made.outcome)
+        print_outcome(dataset.config, dataset.outcome)
 
 
 def _list_recipes() -> None:

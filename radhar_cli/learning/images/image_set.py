@@ -41,7 +41,7 @@ class Resized:
             return levels
         is_gray = levels.shape[2] == 1
         picture = Image.fromarray(levels[..., 0] if is_gray else levels)
-        resized = np.asarray(picture.resize(self.size[::-1], Image.Resampling.BILINEAR))
+        resized = np.array(picture.resize(self.size[::-1], Image.Resampling.BILINEAR))
         return resized[..., None] if is_gray else resized
 
 

@@ -34,7 +34,7 @@ from radhar_cli.numerics.arrays import Float, Index
 from radhar_cli.numerics.randomness import TRAINING, stream
 from radhar_cli.processes.progress import Progress
 from radhar_cli.study.benchmark.protocols import Protocol
-from radhar_cli.study.benchmark.sets import Fold, Sides, learning_set, training_part
+from radhar_cli.study.benchmark.sets import BothSets, Fold, learning_set, training_part
 
 SIMULATION, ADAPTED, MEASURED, TOGETHER = "simulation", "adapted", "measured", "together"
 ROWS = (SIMULATION, ADAPTED, "1", "5", "10", "20", MEASURED, TOGETHER)
@@ -88,7 +88,7 @@ class RowResult:
     why_not: str = ""
 
 
-class Step(NamedTuple):
+class RowTraining(NamedTuple):
     """Training and test of a row: its seed and fold."""
 
     row: str
@@ -102,15 +102,17 @@ class Bench:
 
     protocol: Protocol
     config: TrainConfig  # of the first seed
-    sides: Sides
+    both: BothSets
     folder: Path
     progress: Progress
     adapting: int = ADAPTING  # epochs without labels
 
-    def steps(self, row: str, seeds: int) -> list[Step]:
+    def steps(self, row: str, seeds: int) -> list[RowTraining]:
         """Trainings of a row: one a seed and, of what learns from measured samples, a fold."""
-        folds = 1 if row == SIMULATION else len(self.sides.folds)
-        return [Step(row, seed, fold) for seed in range(1, seeds + 1) for fold in range(folds)]
+        folds = 1 if row == SIMULATION else len(self.both.folds)
+        return [
+            RowTraining(row, seed, fold) for seed in range(1, seeds + 1) for fold in range(folds)
+        ]
 
     def measure_row(self, row: str, seeds: int) -> RowResult:
         """Score of a row over all seeds and folds; what is done already is not trained again."""
@@ -123,9 +125,7 @@ class Bench:
                 rows, of_step = self._measure_step(step)
                 for name, values in of_step.items():
                     if step.fold == 0:
-                        scores.setdefault(name, []).append(
-                            np.full(len(self.sides.measured), np.nan)
-                        )
+                        scores.setdefault(name, []).append(np.full(len(self.both.measured), np.nan))
                     scores[name][-1][rows] = values
                 self.progress.advance(1)
         except RadharError as error:
@@ -143,7 +143,7 @@ class Bench:
         table = np.stack(of_seeds)
         rows = np.flatnonzero(np.isfinite(table).all(0))
         values = table[:, rows].mean(0)
-        groups = self.sides.measured.samples.groups(rows)
+        groups = self.both.measured.samples.groups(rows)
         interval_of = numbers_of_mean if self.protocol.find_joints else numbers_of_share
         numbers = interval_of(main, values, groups)
         ends = numbers[f"{main}_95"]
@@ -158,13 +158,13 @@ class Bench:
             numbers["interval_over"],
         )
 
-    def _measure_step(self, step: Step) -> tuple[Index, dict[str, Float]]:
+    def _measure_step(self, step: RowTraining) -> tuple[Index, dict[str, Float]]:
         """Rows that a step tests, and their scores by name.
 
         Raises:
             RadharError: it cannot be trained.
         """
-        folds = self.sides.folds
+        folds = self.both.folds
         fold = folds[step.fold]
         tested = fold.tested
         if step.row == SIMULATION:
@@ -182,14 +182,14 @@ class Bench:
             write_whole(run, run / SCORES, (json.dumps(content) + "\n").encode())
         return tested, scores
 
-    def _run_folder(self, step: Step) -> Path:
+    def _run_folder(self, step: RowTraining) -> Path:
         """Folder of a step, which all that its run depends on names."""
         depends = [
             self.config.model_dump(mode="json", exclude={"device", "workers", "threads"}),
             self.adapting if step.row == ADAPTED else None,
             self._contents["simulated"] if step.row != MEASURED else None,
             self._contents["measured"],
-            [rows.tolist() for rows in self.sides.folds[step.fold][:2]],
+            [rows.tolist() for rows in self.both.folds[step.fold][:2]],
         ]
         digest = hashlib.sha256(json.dumps(depends).encode()).hexdigest()[:12]
         return self.folder / f"{step.row}_{step.seed}_{step.fold + 1}_{digest}"
@@ -197,21 +197,21 @@ class Bench:
     @cached_property
     def _contents(self) -> dict[str, str]:
         """Digests of the two data sets."""
-        sets = {"measured": self.sides.measured, "simulated": self.sides.simulated}
+        sets = {"measured": self.both.measured, "simulated": self.both.simulated}
         return {name: content_hash(images, images.rows("all")) for name, images in sets.items()}
 
-    def _train(self, step: Step, fold: Fold, run: Path) -> None:
+    def _train(self, step: RowTraining, fold: Fold, run: Path) -> None:
         """Train a step in its folder.
 
         Raises:
             RadharError: it cannot be trained.
         """
         config = self.config.model_copy(update={"seed": step.seed})
-        simulated, quiet = self.sides.simulated, QuietTraining(self.progress)
+        simulated, quiet = self.both.simulated, QuietTraining(self.progress)
         if step.row == SIMULATION:
             train(config, simulated, run, quiet)
             return
-        learned = learning_set(self.sides, fold, config)
+        learned = learning_set(self.both, fold, config)
         if step.row == MEASURED:
             train(config, learned, run, quiet)
         elif step.row == TOGETHER:
@@ -224,21 +224,21 @@ class Bench:
 
     def _trained_on_simulation(self, seed: int) -> Path:
         """Run that learned from the simulation alone."""
-        step = Step(SIMULATION, seed, 0)
+        step = RowTraining(SIMULATION, seed, 0)
         run = self._run_folder(step)
-        self._train(step, self.sides.folds[0], run)
+        self._train(step, self.both.folds[0], run)
         return run
 
     def _adapt(self, start: Path, learned: ImageSet, run: Path) -> None:
         """Adapt a run to measured samples without their labels; the simulated are shown on."""
-        mixed = Mixed(training_part(self.sides.simulated))
+        mixed = Mixed(training_part(self.both.simulated))
         options = AdaptOptions(overwrite=True, epochs=self.adapting, mix=mixed)
         device = choose_device(self.config.device)
         adapt(start, (learned, np.arange(len(learned))), run, device, options)
 
     def _tune(self, start: Path, labelled: ImageSet, seed: int, run: Path) -> None:
         """Fine-tune a run with a few labelled samples a class, half as long as it was trained."""
-        simulated = training_part(self.sides.simulated)
+        simulated = training_part(self.both.simulated)
         images, weights = join_labelled(load_best(start)[0], labelled, [simulated], MAX_SHOWN)
         config = self.config
         half = {
@@ -254,7 +254,7 @@ class Bench:
         """Scores [len(rows)] of measured samples by name, the main score first."""
         metadata, network = load_best(run)
         device = choose_device(self.config.device)
-        images = self.sides.measured
+        images = self.both.measured
         predictions = predict(network.to(device), metadata, images, rows, device, BATCH)
         if not self.protocol.find_joints:
             truth = labels_for(images, predictions.names)[rows]
@@ -283,17 +283,17 @@ def draw_labelled(images: ImageSet, shots: int, seed: int) -> Index:
     return np.concatenate(drawn)
 
 
-def joint_errors(found: Float, true: Float, root: int) -> dict[str, Float]:
+def joint_errors(estimated: Float, true: Float, root: int) -> dict[str, Float]:
     """Mean distance of the joints of each sequence [N], cm: absolute, and about the root.
 
     Args:
-        found: [N, T, joint, 3], m.
+        estimated: [N, T, joint, 3], m.
         true: [N, T, joint, 3], m; NaN where a frame has none. A sequence without any is NaN.
         root: number of the joint that root-relative errors are about.
     """
     errors = {}
     for name, centre in (("mpjpe_cm", False), ("root_relative_cm", True)):
-        deviation = found - true
+        deviation = estimated - true
         if centre:
             deviation = deviation - deviation[:, :, root : root + 1]
         distance = np.linalg.norm(deviation, axis=3).mean(2)  # [N, T]

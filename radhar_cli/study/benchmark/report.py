@@ -10,7 +10,7 @@ from radhar_cli.figures.report.report import Report
 from radhar_cli.learning.intervals import ends_in_words, interval_in_words
 from radhar_cli.study.benchmark.engine import RowResult
 from radhar_cli.study.benchmark.protocols import PERSONS, Protocol
-from radhar_cli.study.benchmark.study import BenchmarkOptions, ProtocolResult
+from radhar_cli.study.benchmark.study import RADHAR, BenchmarkOptions, ProtocolResult
 
 STEM = "benchmark"
 COLUMNS = (
@@ -40,10 +40,10 @@ def result_lines(result: ProtocolResult) -> list[str]:
 def describe_protocol(result: ProtocolResult) -> str:
     """Data sets, target and split of a protocol, in words."""
     protocol = result.protocol
-    what = "joints" if protocol.find_joints else f"{len(result.classes)} classes"
+    target = "joints" if protocol.find_joints else f"{len(result.classes)} classes"
     left_out = f" ({len(result.left_out)} left out)" if result.left_out else ""
     split = "persons in turn" if protocol.split == PERSONS else "the authors' test part"
-    return f"{protocol.map} to {what}{left_out}, {split}; simulated: {result.simulated}"
+    return f"{protocol.map} to {target}{left_out}, {split}; simulated: {result.simulated}"
 
 
 def _value_in_words(row: RowResult, protocol: Protocol) -> str:
@@ -80,12 +80,16 @@ def benchmark_report(options: BenchmarkOptions, results: Sequence[ProtocolResult
         if result.why_not:
             report.add(Sentences([f"Not done: {result.why_not}"]))
             continue
-        tuned_on = result.protocol.tuned_on
-        about_simulation = f"The simulation was tuned on {tuned_on}."
+        about_simulation = f"What tuned the simulation: {_tuned_on(result) or 'its makers know'}."
         report.add(Sentences([describe_protocol(result), about_simulation], is_list=True))
         rows = [[row.learned_from, _value_in_words(row, result.protocol)] for row in result.rows]
         report.add(ReportTable(("trained on", _score_of(result.protocol)), rows))
     return report
+
+
+def _tuned_on(result: ProtocolResult) -> str | None:
+    """Measured data that tuned the simulation; None of another simulator's."""
+    return result.protocol.tuned_on if result.simulated == RADHAR else None
 
 
 def _score_of(protocol: Protocol) -> str:
@@ -97,7 +101,7 @@ def _numbers(result: ProtocolResult) -> dict[str, Any]:
     """Numbers of a protocol for programs."""
     return {
         "simulated": result.simulated,
-        "tuned_on": result.protocol.tuned_on,
+        "tuned_on": _tuned_on(result),
         "split": result.protocol.split,
         "score": _score_of(result.protocol),
         "classes": list(result.classes),

@@ -39,16 +39,22 @@ class MeasuredSource:
     recordings: int | None = None  # in the download
 
 
-def find_measured(protocol: Protocol, folder: Path) -> MeasuredSource | None:
+def find_measured(protocol: Protocol, folder: Path, out: Path) -> MeasuredSource | None:
     """Find the measured data set of a protocol below a folder; None where it is not there.
+
+    Args:
+        protocol: the protocol.
+        folder: folder of downloads and prepared data sets.
+        out: folder of the benchmark, which is passed over.
 
     Raises:
         RadharError: the download cannot be read as it is.
     """
-    for inner in _folders(folder):
+    folders = [*_folders(folder, out)]
+    for inner in folders:
         if _is_prepared(inner, protocol):
             return MeasuredSource(inner, None)
-    for inner in _folders(folder) if protocol.part else [folder]:
+    for inner in folders if protocol.part else [folder]:
         if protocol.part and inner.name.lower() != protocol.part.lower():
             continue
         preparation = read_preparation(protocol.recipe, inner, protocol.preparing)
@@ -59,8 +65,8 @@ def find_measured(protocol: Protocol, folder: Path) -> MeasuredSource | None:
     return None
 
 
-def _folders(folder: Path) -> Iterator[Path]:
-    """Yield a folder and those below it, the upper ones first; no link is followed."""
+def _folders(folder: Path, without: Path) -> Iterator[Path]:
+    """Yield a folder and those below it but one, the upper ones first; no link is followed."""
     waiting, count = [(folder, 0)], 0
     while waiting and count < MAX_FOLDERS:
         inner, depth = waiting.pop(0)
@@ -68,7 +74,8 @@ def _folders(folder: Path) -> Iterator[Path]:
         yield inner
         if depth < DEEPEST and not (inner / RECORDINGS / ORIGIN).exists():
             children = sorted(inner.iterdir())
-            waiting += [(p, depth + 1) for p in children if p.is_dir() and not p.is_symlink()]
+            inner_folders = [p for p in children if p.is_dir() and not p.is_symlink()]
+            waiting += [(p, depth + 1) for p in inner_folders if p.absolute() != without.absolute()]
 
 
 def _is_prepared(folder: Path, protocol: Protocol) -> bool:
@@ -132,7 +139,7 @@ class Fold(NamedTuple):
 
 
 @dataclass(frozen=True)
-class Sides:
+class BothSets:
     """Measured and simulated samples under one list of classes."""
 
     measured: ImageSet
@@ -141,7 +148,7 @@ class Sides:
     left_out: tuple[str, ...]  # measured classes that the simulation lacks
 
 
-def open_sides(protocol: Protocol, config: TrainConfig, measured: Path, simulated: Path) -> Sides:
+def open_both(protocol: Protocol, config: TrainConfig, measured: Path, simulated: Path) -> BothSets:
     """Open the two data sets of a protocol; classes that either lacks are left out.
 
     Raises:
@@ -174,7 +181,7 @@ def open_sides(protocol: Protocol, config: TrainConfig, measured: Path, simulate
         )
         for images in (of_measured, of_simulated)
     )
-    return Sides(of_measured, of_simulated, _cut_folds(of_measured, protocol), left_out)
+    return BothSets(of_measured, of_simulated, _cut_folds(of_measured, protocol), left_out)
 
 
 def _keep_classes(simulated: ImageSet, names: tuple[str, ...]) -> ImageSet:
@@ -232,7 +239,7 @@ def _cut_folds(measured: ImageSet, protocol: Protocol) -> tuple[Fold, ...]:
     return tuple(Fold(every[~is_tested], every[is_tested]) for is_tested in masks)
 
 
-def learning_set(sides: Sides, fold: Fold, config: TrainConfig) -> ImageSet:
+def learning_set(both: BothSets, fold: Fold, config: TrainConfig) -> ImageSet:
     """Measured samples that may be learned from, with parts that train and validate.
 
     The authors' validation part is kept; else a share of each class is cut off.
@@ -240,10 +247,10 @@ def learning_set(sides: Sides, fold: Fold, config: TrainConfig) -> ImageSet:
     Raises:
         FolderError: a class has too few.
     """
-    images = sides.measured.take(fold.learned)
+    images = both.measured.take(fold.learned)
     split = images.samples.split
     has_parts = split is not None and {*np.unique(split).tolist()} == {0, 1}
-    if not has_parts or len(sides.folds) > 1:
+    if not has_parts or len(both.folds) > 1:
         images = replace(images, samples=replace(images.samples, split=None))
     return images.cut(config.validation_share, config.seed)
 

@@ -17,18 +17,19 @@ from radhar_cli.study.benchmark.protocols import PERSONS, Protocol, choose_proto
 from radhar_cli.study.benchmark.sets import (
     MeasuredSource,
     find_measured,
-    open_sides,
+    open_both,
     prepare_measured,
     simulate,
     simulation_config,
 )
 
+RADHAR = "radhar"  # simulator, where no other one is given
 TRIAL_S = 6.0  # of timing samples, in a dry run
 
 
 @dataclass(frozen=True)
 class BenchmarkOptions:
-    """What is asked of a benchmark.
+    """Data, rows and sizes of a benchmark.
 
     Attributes:
         folder: holds downloads, or data sets that were prepared of them.
@@ -89,19 +90,20 @@ def find_protocols(options: BenchmarkOptions) -> list[FoundProtocol]:
     for path, holds in ((options.folder, "downloads"), (options.simulated, "simulated samples")):
         if path is not None and not path.exists():
             raise FolderError(f"{path}: no such folder; should hold {holds}")
-    found = [
-        _find_protocol(name, protocol, options.folder)
+    choices = [
+        _find_protocol(name, protocol, options)
         for name, protocol in choose_protocols(options.protocols).items()
     ]
-    if all(one.source is None for one in found):
-        raise FolderError("; ".join(one.why_not for one in found))
-    return found
+    if all(choice.source is None for choice in choices):
+        raise FolderError("; ".join(choice.why_not for choice in choices))
+    return choices
 
 
-def _find_protocol(name: str, protocol: Protocol, folder: Path) -> FoundProtocol:
-    """Find the measured data set of a protocol below a folder."""
+def _find_protocol(name: str, protocol: Protocol, options: BenchmarkOptions) -> FoundProtocol:
+    """Find the measured data set of a protocol."""
+    folder = options.folder
     try:
-        source = find_measured(protocol, folder)
+        source = find_measured(protocol, folder, options.out)
     except RadharError as error:
         return FoundProtocol(name, protocol, None, str(error))
     why_not = "" if source else f"{folder}: holds no {protocol.recipe} {protocol.part}".rstrip()
@@ -110,22 +112,19 @@ def _find_protocol(name: str, protocol: Protocol, folder: Path) -> FoundProtocol
 
 def run_benchmark(options: BenchmarkOptions, progress: Progress) -> Iterator[ProtocolResult]:
     """Yield the rows of every protocol; what an earlier call has trained is not trained again."""
-    for found in find_protocols(options):
-        own = options.simulated is None
-        result = ProtocolResult(
-            found.name, found.protocol, "radhar" if own else str(options.simulated)
-        )
-        if found.source is None:
-            yield replace(result, why_not=found.why_not)
+    for choice in find_protocols(options):
+        result = ProtocolResult(choice.name, choice.protocol, str(options.simulated or RADHAR))
+        if choice.source is None:
+            yield replace(result, why_not=choice.why_not)
             continue
         try:
-            bench = _open_bench(found.protocol, found.source, options, progress)
+            bench = _open_bench(choice.protocol, choice.source, options, progress)
         except RadharError as error:
             yield replace(result, why_not=str(error))
             continue
         rows = [bench.measure_row(row, options.seeds) for row in options.rows]
-        classes = bench.sides.measured.classes
-        yield replace(result, classes=classes, left_out=bench.sides.left_out, rows=rows)
+        classes = bench.both.measured.classes
+        yield replace(result, classes=classes, left_out=bench.both.left_out, rows=rows)
 
 
 def _open_bench(
@@ -139,26 +138,26 @@ def _open_bench(
         config = simulation_config(protocol, options.per_class)
         simulated = simulate(config, out / "simulated", jobs, progress)
     training = options.training(protocol)
-    sides = open_sides(protocol, training, measured, simulated)
-    for note in dict.fromkeys((*sides.measured.notes, *sides.simulated.notes)):
+    both = open_both(protocol, training, measured, simulated)
+    for note in dict.fromkeys((*both.measured.notes, *both.simulated.notes)):
         progress.say(note)
-    bench = Bench(protocol, training, sides, out / "runs" / protocol.data, progress)
+    bench = Bench(protocol, training, both, out / "runs" / protocol.data, progress)
     return bench if options.epochs is None else replace(bench, adapting=options.epochs)
 
 
 def plan_lines(options: BenchmarkOptions) -> Iterator[str]:
     """Yield what a benchmark will do and roughly what it costs; nothing is written."""
-    for found in find_protocols(options):
-        if found.source is None:
-            yield f"{found.name}: not done: {found.why_not}"
+    for choice in find_protocols(options):
+        if choice.source is None:
+            yield f"{choice.name}: not done: {choice.why_not}"
             continue
-        source, protocol = found.source, found.protocol
-        there = (
+        source, protocol = choice.source, choice.protocol
+        measured = (
             f"{source.dataset} is prepared"
             if source.preparation is None
             else f"{source.recordings} recordings will be prepared"
         )
-        yield f"{found.name}: {there}"
+        yield f"{choice.name}: {measured}"
         yield f"  simulated: {_simulation_in_words(protocol, options)}"
         folds = protocol.folds if protocol.split == PERSONS else 1
         per_seed = sum(1 if row == SIMULATION else folds for row in options.rows)

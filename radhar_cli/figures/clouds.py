@@ -6,7 +6,7 @@ from typing import NamedTuple
 import numpy as np
 
 from radhar_cli.figures.page import page, png_bytes
-from radhar_cli.figures.sides import VIEWS, Parents, SideView, bones, colour_bar
+from radhar_cli.figures.sides import VIEWS, Parents, SideView, StillView, bones, colour_bar
 from radhar_cli.numerics.arrays import Float
 
 REACH_M = 1.2  # from the middle of the body, or of the points
@@ -39,12 +39,12 @@ def clouds_png(pictures: Sequence[CloudPicture], parents: Parents, title: str) -
         middle = np.median(places, axis=0) if len(places) else np.array([2.0, 0.0, 0.0])
         limits = middle[:, None] + [-REACH_M, REACH_M]
         for axes, view in zip(column, VIEWS, strict=True):
-            side = SideView(axes, view, limits, FASTEST)
+            side = SideView(axes, view, limits, FASTEST, [], StillView())
             ends = bones(picture.joints, parents) if parents else np.zeros((0, 2, 3))
             side.show(picture.points[:, :3], picture.points[:, 3], ends)
             across, up = (picture.joints[:, axis] for axis in (side.across, side.up))
-            axes.plot(side.sign * across, up, "o", color="0.3", markersize=2)
-        column[0].set_title(f"{picture.words}\n{next(iter(VIEWS))}", fontsize=8)
+            axes.plot(across, up, "o", color="0.3", markersize=2)
+        column[0].set_title(f"{picture.words}\n{next(iter(VIEWS))}")
     colour_bar(figure, side, ax=grid, shrink=0.5)
-    figure.suptitle(title, fontsize=10)
+    figure.suptitle(title)
     return png_bytes(figure)

@@ -106,6 +106,10 @@ def _draw_still_view(axes: Axes, name: str, around: StillView) -> None:
         for outline in around.outlines:
             axes.plot(outline[:, 1], outline[:, 0], color="0.45", linewidth=1.2, scalex=False)
         ahead, left, _ = around.radar
+        if ahead < axes.get_ylim()[0]:
+            below: dict[str, Any] = {"color": RADAR, "transform": axes.transAxes}
+            axes.text(0.02, 0.03, "\N{DOWNWARDS ARROW} radar", **below)
+            return
         axes.plot(left, ahead, "D", color=RADAR, markersize=7, clip_on=False, zorder=4)
         look: dict[str, Any] = {"color": RADAR, "textcoords": "offset points", "va": "center"}
         axes.annotate("radar", (left, ahead), (8, 0), **look)

@@ -94,7 +94,7 @@ def chamfer_distances(clouds: list[Float], measured: list[Float], same: bool) ->
             continue
         every = np.concatenate(others)
         reference = every[:: -(-len(every) // MOST_POINTS)]
-        to_reference = cKDTree(reference).query(cloud)[0].mean()
-        from_reference = cKDTree(cloud).query(reference)[0].mean()
+        to_reference = np.mean(cKDTree(reference).query(cloud)[0])
+        from_reference = np.mean(cKDTree(cloud).query(reference)[0])
         distances[number] = (to_reference + from_reference) / 2
     return distances

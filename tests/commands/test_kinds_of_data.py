@@ -171,7 +171,7 @@ COMMANDS = (
 )
 
 
-@pytest.mark.every(3)
+@pytest.mark.every(8)
 @pytest.mark.usefixtures("blank_figures")
 @pytest.mark.parametrize("kind", KINDS)
 def test_every_command_works_or_says_in_a_line_what_to_do(

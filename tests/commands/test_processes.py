@@ -80,6 +80,7 @@ assert not {"torch", "timm", "safetensors"} & set(sys.modules)
 """
 
 
+@pytest.mark.every(3)
 @pytest.mark.parametrize(
     "words",
     [

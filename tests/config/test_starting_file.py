@@ -77,6 +77,7 @@ def test_a_commented_section_can_be_uncommented(tmp_path: Path) -> None:
     assert load_config(path) == Config(wall=WallConfig())
 
 
+@pytest.mark.every(4)
 @pytest.mark.parametrize("name", RADARS)
 def test_a_known_radar_is_simulated(tmp_path: Path, name: str) -> None:
     """A person gives points where it is."""

@@ -568,6 +568,7 @@ def document(key: str, value: float) -> dict[str, Any]:
     return base
 
 
+@pytest.mark.every(4)
 @pytest.mark.parametrize("key", HUMAN_LIMITS)
 def test_the_limits_of_people(key: str) -> None:
     low, high = HUMAN_LIMITS[key]

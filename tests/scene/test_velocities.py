@@ -84,6 +84,7 @@ def test_jumps_are_found() -> None:
     assert not jumps_of_velocity(Knock(0.5, (1.2345678,)), 2.0)  # type: ignore[arg-type]
 
 
+@pytest.mark.every(4)
 @pytest.mark.parametrize("name", [name for name in NAMES if name != NOBODY])
 def test_velocities_do_not_jump(name: str) -> None:
     for index, stature in enumerate(STATURES):

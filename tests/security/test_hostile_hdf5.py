@@ -448,7 +448,7 @@ def told(
     return answers(place, asked, [command(name, place / "good/set", good_run) for name in COMMANDS])
 
 
-@pytest.mark.every(2)
+@pytest.mark.every(4)
 @pytest.mark.parametrize("case", [*HOSTILE, *NO_FILES])
 def test_hostile_files_are_refused_by_file_and_field(told: dict[str, Answer], case: str) -> None:
     if case in HOSTILE:

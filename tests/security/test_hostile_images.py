@@ -202,6 +202,7 @@ def given(place: Path) -> dict[str, Answer]:
     return answers(place, cases, warm_up=[["predict", run, data / "val", "--split", "all"]])
 
 
+@pytest.mark.every(3)
 @pytest.mark.parametrize("name", REFUSED)
 def test_a_hostile_image_is_refused(given: dict[str, Answer], name: str) -> None:
     assert REFUSED[name][1] in refused(given[name])

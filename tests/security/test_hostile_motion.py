@@ -158,6 +158,7 @@ def written(folder: Path, name: str) -> Path:
     return folder / (file if file != "x.asf" else "x.amc")
 
 
+@pytest.mark.every(3)
 @pytest.mark.parametrize("name", HOSTILE)
 def test_hostile_files_are_refused(name: str, tmp_path: Path) -> None:
     path = written(tmp_path, name)

@@ -50,6 +50,7 @@ def test_the_torso_of_radhar_is_three_fifths_up() -> None:
     assert pytest.approx(0.6) == TORSO_SHARE
 
 
+@pytest.mark.every(3)
 @pytest.mark.parametrize("key", JOINT_SETS)
 def test_axes_are_asked_for_and_units_are_found(key: str, walker: Float) -> None:
     """y down as a camera's (m), y up (mm) and z up (cm), with a camera's mirror image."""

@@ -148,6 +148,7 @@ def test_images_of_any_size(size):
     assert found.values.shape == (TRUTH.size, 2 * found.ranks.shape[1])
 
 
+@pytest.mark.every(4)
 @pytest.mark.parametrize("mark", [set_corner, add_outer_rows, add_first_column, None])
 def test_the_audit_says_so(tmp_path, mark):
     def draw(rng, label):

@@ -62,7 +62,7 @@ def benchmark(
         ),
     ] = False,
 ) -> None:
-    """Compare simulators by networks that are tested on measured data.
+    """Compare simulators by networks tested on measured data.
 
     Example:
 

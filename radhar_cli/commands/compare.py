@@ -32,7 +32,7 @@ def compare(
     seed: Annotated[int, typer.Option(min=0, help="Seed of the random subset.")] = 1,
     overwrite: ReplaceResults = False,
 ) -> None:
-    """Measure how much simulated maps or point clouds differ from measured ones.
+    """Measure how much simulated maps or clouds differ from measured.
 
     Prints statistics, their distances, and the result of a two-sample test.
 

@@ -50,7 +50,7 @@ def predict(
     ] = None,
     device: Device = "auto",
 ) -> None:
-    """Find the classes of images or the joints in clouds, without their labels.
+    """Find classes of images, or joints in clouds, without labels.
 
     Example:
 

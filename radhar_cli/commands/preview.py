@@ -25,7 +25,7 @@ def preview(
     ] = None,
     overwrite: Replace = False,
 ) -> None:
-    """Draw a contact sheet of a data set: some samples of every class.
+    """Draw a contact sheet of a data set: samples of every class.
 
     Example:
 

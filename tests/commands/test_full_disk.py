@@ -15,6 +15,7 @@ RADAR = " ".join(
     f"--set {one}"
     for one in ("carrier_hz=1e10", "prf_hz=500", "bandwidth_hz=1e9", "adc_rate_hz=1e6")
 )
+FORM = "--set axes=[receiver,sample,pulse] --set beat=negative"
 SCENE = f"simulate small.yaml --activity walking --raw --maps rtm --no-figures {SHORT}"
 PROCESS = "process walk/recording.h5 --config small.yaml --maps rtm"
 
@@ -50,7 +51,7 @@ def full_disk(limit):
         (PROCESS, 10_000, "/maps.h5", []),
         (SCENE, 10_000, "/scene.h5", []),
         (SCENE, 500_000, "/recording.h5", ["scene.h5", "scene.json", "scene.yaml"]),
-        (f"import capture.npy {RADAR} --set axes=[receiver,sample,pulse]", 10_000, "", []),
+        (f"import capture.npy {RADAR} {FORM}", 10_000, "", []),
         ("convert set --to parquet", 10_000, "", []),
     ],
 )

@@ -107,6 +107,8 @@ def open_sides(
         FolderError: data that cannot be used, of other maps, or without a common class.
     """
     paths = (simulated, measured)
+    for path in paths:
+        _refuse_one_recording(path)
     map_name = map_name or _common_map(paths)
     image_sets = [_open(path, map_name) for path in paths]
     maps = [images.map for images in image_sets]
@@ -134,6 +136,17 @@ def open_sides(
     return Pair((first, second))
 
 
+def _refuse_one_recording(path: Path) -> None:
+    """Refuse the maps of one recording, which are no data set."""
+    results = path / MAPS if path.is_dir() else path
+    if results.name == MAPS and results.is_file():
+        raise FolderError(
+            f"{results}: holds the maps of one recording, and is no data set: `radhar generate "
+            "CONFIG --recordings MANIFEST -o FOLDER` makes a data set of recordings "
+            "(docs/guide/measured.md)"
+        )
+
+
 def _common_map(paths: Sequence[Path]) -> str | None:
     """First map of the first of two dataset.h5 that the other has; None where they have none."""
     maps = list[tuple[str, ...]]()
@@ -147,13 +160,6 @@ def _common_map(paths: Sequence[Path]) -> str | None:
 
 def _open(path: Path, map_name: str | None) -> ImageSet:
     """Open a data set; a foreign tree, which names no map, has the one that it has."""
-    results = path / MAPS if path.is_dir() else path
-    if results.name == MAPS and results.is_file():
-        raise FolderError(
-            f"{results}: holds the maps of one recording, and is no data set: `radhar generate "
-            "CONFIG --recordings MANIFEST -o FOLDER` makes a data set of recordings "
-            "(docs/guide/measured.md)"
-        )
     foreign = path.is_dir() and not is_h5(path) and map_of_folder(path) is None
     if foreign and map_name is not None and not (path / map_name).is_dir():
         map_name = None

@@ -58,7 +58,7 @@ def benchmark(
     dry_run: Annotated[
         bool,
         typer.Option(
-            "--dry-run", help="Print what will be done and roughly what it costs; write nothing."
+            "--dry-run", help="Print what will be done, and the time of simulations; write nothing."
         ),
     ] = False,
 ) -> None:

@@ -101,6 +101,7 @@ def train(
     from radhar_cli.learning.settings import TrainConfig
     from radhar_cli.learning.tasks.predictions import EvalOptions
 
+    refuse_output_inside_data(out, [*data, *([init] if init else [])])
     if shots is not None:
         said = {"--config": config, "--model": model, "--target": target, "--overwrite": overwrite}
         start = _start_of_shots(init, {**said, "--tensorboard": tensorboard})
@@ -110,7 +111,6 @@ def train(
     named = {"map": map_, "model": model, "target": target}
     overrides = [Override(key, value, f"--{key}") for key, value in named.items() if value]
     settings = load_section(TrainConfig, config, [*(set_ or []), *overrides])
-    refuse_output_inside_data(out, [*data, *([init] if init else [])])
     options = training.TrainOptions(
         names=read_classes(classes),
         start=init,

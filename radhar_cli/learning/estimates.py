@@ -43,12 +43,24 @@ class RunEstimates:
 
     @property
     def probabilities(self) -> Float:
-        """Probabilities; of joints there are none."""
+        """Probabilities, of a network that names classes, labels or a count.
+
+        Raises:
+            ValueError: the network finds joints.
+        """
+        if self.task.coordinates:
+            raise ValueError("joints have no probabilities; see joints")
         return self.values
 
     @property
     def joints(self) -> Float:
-        """Joints [N, T, joint, 3], m; only of a network that finds them."""
+        """Joints [N, T, joint, 3], m, of a network that finds them.
+
+        Raises:
+            ValueError: the network finds none.
+        """
+        if not self.task.coordinates:
+            raise ValueError("the network finds no joints; see probabilities")
         return self.values
 
     @property
@@ -59,7 +71,7 @@ class RunEstimates:
     @property
     def likeliest(self) -> list[Any]:
         """Likeliest class of each image [N], or of each column [N][columns]."""
-        likeliest: list[Any] = np.array(self.names)[self.values.argmax(-1)].tolist()
+        likeliest: list[Any] = np.array(self.names)[self.probabilities.argmax(-1)].tolist()
         return likeliest
 
     def documents(self) -> Iterator[dict[str, Any]]:

@@ -143,7 +143,7 @@ def read_clips(
     cells = _read_columns(path, settings.columns)
     frame = _numbers(path, "frame", cells["frame"])
     rounded = np.round(frame)
-    if not len(frame) or not np.isfinite(frame).all() or (rounded != frame).any():
+    if not len(frame) or not (np.abs(frame) < 2**53).all() or (rounded != frame).any():
         raise CaptureError(f"{path}: frame should be whole numbers")
     numbers = rounded.astype(np.int64)
     places = np.column_stack([_numbers(path, name, cells[name]) for name in "xyz"])

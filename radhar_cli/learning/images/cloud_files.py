@@ -12,7 +12,7 @@ from radhar_cli.capture.point_recording import PointRecording, is_point_recordin
 from radhar_cli.capture.recipes.clouds import CloudClip
 from radhar_cli.capture.recipes.points import PointTableSettings, read_clips
 from radhar_cli.config.reading import Overrides, load_section
-from radhar_cli.errors import CaptureError
+from radhar_cli.errors import CaptureError, ConfigError
 from radhar_cli.learning.images.sequences import cloud_frames, fit_length
 from radhar_cli.numerics.arrays import Float, Index
 
@@ -70,6 +70,8 @@ def open_cloud_file(path: Path, size: tuple[int, int], settings: Overrides = ())
         RadharError: the file cannot be used, or does not say which way its axes point.
     """
     if is_point_recording(path):
+        if settings:
+            raise ConfigError(f"{path}: says its axes itself; --set should be left out")
         clips = [_clip_of_recording(path)]
     elif is_point_capture(path):
         raise CaptureError(f"{path}: is a dump of a board; radhar import {path} -o points.h5 first")

@@ -157,6 +157,8 @@ def read_npz_array(path: Path, name: str, max_bytes: int, kinds: str = "iuf") ->
             raise ValueError(f"holds no {name} of plain numbers; pickles are not opened")
         if 8 * prod(shape) > max_bytes:
             raise ValueError(f"{name} has the shape {[*shape]}, too large")
+        if archive.getinfo(f"{name}.npy").file_size > max_bytes:
+            raise ValueError(f"{name} has more than {max_bytes} bytes")
         with archive.open(f"{name}.npy") as file:
             array: NDArray[Any] = np.lib.format.read_array(file, allow_pickle=False)
             return array

@@ -8,12 +8,14 @@ import hashlib
 import json
 from dataclasses import dataclass, field
 from functools import cached_property
+from importlib.metadata import version
 from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
 from pydantic import TypeAdapter, ValidationError
 
+from radhar_cli.dataset.code_digest import code_digest
 from radhar_cli.dataset.files import write_whole
 from radhar_cli.errors import ConfigError, FolderError, RadharError
 from radhar_cli.files.plain_json import plain
@@ -185,6 +187,8 @@ class Bench:
     def _run_folder(self, step: RowTraining) -> Path:
         """Folder of a step, which all that its run depends on names."""
         depends = [
+            version("torch"),
+            code_digest((), (__name__,)),
             self.config.model_dump(mode="json", exclude={"device", "workers", "threads"}),
             self.adapting if step.row == ADAPTED else None,
             self._contents["simulated"] if step.row != MEASURED else None,

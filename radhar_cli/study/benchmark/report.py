@@ -10,7 +10,7 @@ from radhar_cli.figures.report.report import Report
 from radhar_cli.learning.intervals import ends_in_words, interval_in_words
 from radhar_cli.study.benchmark.engine import RowResult
 from radhar_cli.study.benchmark.protocols import PERSONS, Protocol
-from radhar_cli.study.benchmark.study import RADHAR, BenchmarkOptions, ProtocolResult
+from radhar_cli.study.benchmark.study import BenchmarkOptions, ProtocolResult
 
 STEM = "benchmark"
 COLUMNS = (
@@ -89,7 +89,7 @@ def benchmark_report(options: BenchmarkOptions, results: Sequence[ProtocolResult
 
 def _tuned_on(result: ProtocolResult) -> str | None:
     """Measured data that tuned the simulation; None of another simulator's."""
-    return result.protocol.tuned_on if result.simulated == RADHAR else None
+    return result.protocol.tuned_on if result.is_ours else None
 
 
 def _score_of(protocol: Protocol) -> str:

@@ -18,14 +18,18 @@ from radhar_cli.dataset.split import TEST, TRAIN
 from radhar_cli.errors import FolderError
 from radhar_cli.files.untrusted import read_json
 from radhar_cli.learning.images.classes import keep_known_classes
-from radhar_cli.learning.images.image_set import ImageSet, labels_for
+from radhar_cli.learning.images.image_set import ImageSet, Pixels, labels_for
 from radhar_cli.learning.images.opening import open_inputs
+from radhar_cli.learning.images.sequences import CLOUDS, COLUMNS
 from radhar_cli.learning.settings import TrainConfig
-from radhar_cli.numerics.arrays import Index
+from radhar_cli.numerics.arrays import Index, Levels
 from radhar_cli.numerics.randomness import TRAINING, stream
 from radhar_cli.processes.progress import Progress
 from radhar_cli.study.benchmark.protocols import PERSONS, Protocol
 
+SNR_COLUMN = COLUMNS.index("snr")
+LOOKED_AT = 32  # samples that tell whether points have an SNR
+NO_SNR = "points of one side have no SNR, so that it is left out on both"
 DEEPEST = 4  # folders below the one that is given, in which data sets and parts are looked for
 MAX_FOLDERS = 10_000
 
@@ -73,7 +77,10 @@ def _folders(folder: Path, without: Path) -> Iterator[Path]:
         count += 1
         yield inner
         if depth < DEEPEST and not (inner / RECORDINGS / ORIGIN).exists():
-            children = sorted(inner.iterdir())
+            try:
+                children = sorted(inner.iterdir())
+            except PermissionError:
+                continue
             inner_folders = [p for p in children if p.is_dir() and not p.is_symlink()]
             waiting += [(p, depth + 1) for p in inner_folders if p.absolute() != without.absolute()]
 
@@ -181,7 +188,41 @@ def open_both(protocol: Protocol, config: TrainConfig, measured: Path, simulated
         )
         for images in (of_measured, of_simulated)
     )
+    of_measured, of_simulated = _with_equal_snr(of_measured, of_simulated, protocol)
     return BothSets(of_measured, of_simulated, _cut_folds(of_measured, protocol), left_out)
+
+
+@dataclass(frozen=True)
+class WithoutSnr:
+    """Clouds whose points have no SNR."""
+
+    pixels: Pixels
+
+    def read(self, row: int) -> Levels:
+        """Clouds [T, points, 6] of a row; the column of the SNR is 0."""
+        clouds = self.pixels.read(row).copy()
+        clouds[..., SNR_COLUMN] = 0
+        return clouds
+
+
+def _with_equal_snr(
+    measured: ImageSet, simulated: ImageSet, protocol: Protocol
+) -> tuple[ImageSet, ImageSet]:
+    """Clouds of which both or neither have an SNR, which would else tell one from the other."""
+    both = measured, simulated
+    if protocol.map != CLOUDS or all(map(_has_snr, both)):
+        return both
+    measured, simulated = (
+        replace(images, pixels=WithoutSnr(images.pixels), notes=(*images.notes, NO_SNR))
+        for images in both
+    )
+    return measured, simulated
+
+
+def _has_snr(images: ImageSet) -> bool:
+    """Whether points of some sequences have an SNR."""
+    rows = range(0, len(images), max(1, len(images) // LOOKED_AT))
+    return any(images.pixels.read(row)[..., SNR_COLUMN].any() for row in rows)
 
 
 def _keep_classes(simulated: ImageSet, names: tuple[str, ...]) -> ImageSet:

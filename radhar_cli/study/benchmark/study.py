@@ -66,6 +66,7 @@ class ProtocolResult:
     name: str
     protocol: Protocol
     simulated: str  # name of the simulated data set
+    is_ours: bool = True  # whether radhar simulated it
     classes: tuple[str, ...] = ()
     left_out: tuple[str, ...] = ()  # measured classes that the simulation lacks
     rows: list[RowResult] = field(default_factory=list)
@@ -90,6 +91,8 @@ def find_protocols(options: BenchmarkOptions) -> list[FoundProtocol]:
     for path, holds in ((options.folder, "downloads"), (options.simulated, "simulated samples")):
         if path is not None and not path.exists():
             raise FolderError(f"{path}: no such folder; should hold {holds}")
+    if not options.folder.is_dir():
+        raise FolderError(f"{options.folder}: is no folder; should be unpacked into one")
     choices = [
         _find_protocol(name, protocol, options)
         for name, protocol in choose_protocols(options.protocols).items()
@@ -113,7 +116,12 @@ def _find_protocol(name: str, protocol: Protocol, options: BenchmarkOptions) -> 
 def run_benchmark(options: BenchmarkOptions, progress: Progress) -> Iterator[ProtocolResult]:
     """Yield the rows of every protocol; what an earlier call has trained is not trained again."""
     for choice in find_protocols(options):
-        result = ProtocolResult(choice.name, choice.protocol, str(options.simulated or RADHAR))
+        result = ProtocolResult(
+            choice.name,
+            choice.protocol,
+            str(options.simulated or RADHAR),
+            options.simulated is None,
+        )
         if choice.source is None:
             yield replace(result, why_not=choice.why_not)
             continue
@@ -146,7 +154,7 @@ def _open_bench(
 
 
 def plan_lines(options: BenchmarkOptions) -> Iterator[str]:
-    """Yield what a benchmark will do and roughly what it costs; nothing is written."""
+    """Yield what a benchmark will do, and how long its simulations take; nothing is written."""
     for choice in find_protocols(options):
         if choice.source is None:
             yield f"{choice.name}: not done: {choice.why_not}"

@@ -324,11 +324,12 @@ class Request(Section):
         height, width = self.image.size_px
         if self.duration_s is None:
             return
-        seconds = nominal(self.duration_s)
+        seconds, is_sheet = nominal(self.duration_s), bool({*FRAME_MAPS} & {*self.maps})
+        is_usual = is_sheet or self.image.kind == "cfar"  # whose window counts pixels
         if self.stream is not None:
             if height == width:
                 width = self.stream.columns_of(seconds)
-        elif "size_px" not in self.image.model_fields_set and not {*FRAME_MAPS} & {*self.maps}:
+        elif "size_px" not in self.image.model_fields_set and not is_usual:
             height, width = size_of_frames(self.radar, seconds) or (height, width)
         if (height, width) != self.image.size_px:
             size = {"size_px": (height, width)}

@@ -107,8 +107,8 @@ class ImageConfig(Section):
         ),
     ] = (256, 256)
     """Image size [height, width]; one number is a square. Not given, images of a radar with frames
-    have a row a Doppler bin and a column a frame, 32 to 256 of each, unless a map is a sheet of
-    frames."""
+    have a row a Doppler bin and a column a frame, 32 to 256 of each, unless they are masks or a
+    map is a sheet of frames."""
     kind: Literal["decibel", "cfar", "signed"] = "decibel"
     """Kind of pixels: grey levels of decibels; cfar, binary masks of what exceeds its background;
     or signed, the samples of an impulse radar's rtm, 0 in the middle."""

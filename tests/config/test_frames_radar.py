@@ -327,6 +327,7 @@ def test_layers_of_a_wall_are_refused_at_once_with_one_that_stands_for_them(
         ({"maps": ["stft", "rtm"]}, (64, 40)),
         ({"image": {"size_px": 128}}, (128, 128)),
         ({"image": {"dynamic_range_db": 40}}, (64, 40)),
+        ({"image": {"kind": "cfar"}}, (256, 256)),
         ({"maps": ["stft", "range_doppler"]}, (256, 256)),
         ({"radar": {"carrier_hz": 24e9, "prf_hz": 3500}}, (256, 256)),
     ],

@@ -174,3 +174,10 @@ def test_what_cannot_be_drawn_is_refused_in_a_line(run_dir, measured, tmp_path, 
     )
     assert done.returncode == 2
     assert said in done.stderr
+
+
+def test_runs_are_not_written_into_the_data_that_they_learn_from(run_dir, measured):
+    shots = ("--init", run_dir, "--shots", "2")
+    done = radhar("train", measured, "-o", measured / "shots", *shots)
+    assert done.returncode == 2
+    assert not (measured / "shots").exists()

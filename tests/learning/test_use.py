@@ -100,6 +100,11 @@ def test_a_recording_of_points_is_read(place: Path, table: Path) -> None:
     known = radhar_cli.load_run(place / "joints", "cpu").predict(place / "data")
     found = radhar_cli.load_run(place / "joints", "cpu").predict(recording)
     np.testing.assert_allclose(found.joints[0], known.joints[0], atol=1e-4)
+    with pytest.raises(ValueError, match="joints have no probabilities"):
+        found.likeliest  # noqa: B018
+    done = radhar("predict", place / "joints", recording, *SAID[:2])
+    assert done.returncode == 2
+    assert "says its axes itself" in done.stderr
 
 
 def test_what_a_table_does_not_say_is_asked_for_in_a_line(place: Path, table: Path) -> None:

@@ -6,6 +6,7 @@ import shutil
 from itertools import product
 from pathlib import Path
 
+import h5py
 import numpy as np
 import pytest
 from capture.recipes.published_files import (
@@ -149,6 +150,38 @@ def test_nobody_who_is_tested_is_learned_from(theirs: Path) -> None:
         assert not tested & set(learned)
     every = np.sort(np.concatenate([fold.tested for fold in both.folds]))
     assert every.tolist() == list(range(len(both.measured)))
+
+
+def test_an_snr_that_one_side_lacks_is_left_out_on_both(theirs: Path) -> None:
+    """Else one column would tell the measured from the simulated."""
+    protocol, options = PROTOCOLS["radhar"], BenchmarkOptions(theirs, theirs, (), 1)
+    config, of_points = options.training(protocol), theirs / "radhar"
+    both = open_both(protocol, config, of_points, of_points)
+    assert not any("SNR" in note for note in both.measured.notes)
+    without = open_both(protocol, config, strip_snr(of_points, theirs / "no_snr"), of_points)
+    for images in (without.measured, without.simulated):
+        assert not any(images.pixels.read(row)[..., 4].any() for row in range(len(images)))
+        assert any("SNR" in note for note in images.notes)
+    assert any(both.simulated.pixels.read(row)[..., 4].any() for row in range(9))
+
+
+def strip_snr(data: Path, out: Path) -> Path:
+    """Copy of a data set whose points have no SNR."""
+    shutil.copytree(data, out)
+    with h5py.File(out / "dataset.h5", "r+") as file:
+        points = file["products/points"]
+        for row in range(len(points)):
+            values = points[row].reshape(-1, 8)
+            values[:, 5] = np.nan
+            points[row] = values.reshape(points[row].shape)
+    return out
+
+
+def test_a_file_is_no_folder_of_downloads(tmp_path: Path) -> None:
+    (tmp_path / "downloads.zip").write_bytes(b"PK")
+    done = radhar("benchmark", tmp_path / "downloads.zip", "-o", tmp_path / "out")
+    assert done.returncode == 2
+    assert "is no folder; should be unpacked into one" in done.stderr
 
 
 def test_fewer_labels_are_among_more(theirs: Path) -> None:

@@ -71,9 +71,11 @@ LONG = {
     "people.md",
     "poses.md",
     "radars.md",
+    "recipes.md",
     "scenes.md",
     "several_radars.md",
     "streams.md",
+    "tour.md",
     "training.md",
 }
 # What makes a config small, and a command: it stands after its own words.

@@ -57,7 +57,6 @@ LOSSES = {
 }
 
 
-@pytest.mark.every(4)
 @pytest.mark.parametrize("packets", LOSSES.values(), ids=LOSSES)
 @pytest.mark.parametrize(
     ("lanes", "order", "real"), [(2, 1, False), (4, 0, False), (2, 1, True), (2, 0, False)]

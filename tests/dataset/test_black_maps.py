@@ -49,7 +49,6 @@ def test_noise_below_an_echo_of_nothing_is_refused(engine, maps, tmp_path):
         simulate(config, "stationary")
 
 
-@pytest.mark.every(3)
 @ENGINES
 @pytest.mark.parametrize(
     "more", [{"maps": ["rtm"]}, {"maps": ["stft", "fsst"]}, GATED, MASKS], ids=str

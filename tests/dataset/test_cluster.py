@@ -99,7 +99,6 @@ def test_dask_shards_loky_and_one_process_give_the_same_bytes(tmp_path):
     assert len(pngs) == 2 * len(Rows.of(config))  # one of each map
 
 
-@pytest.mark.slow
 def test_a_build_survives_a_killed_worker_and_names_a_killed_scheduler(cluster, tmp_path):
     address, (scheduler, first, _) = cluster
     config = load_config(small_config(tmp_path), CHANGES)

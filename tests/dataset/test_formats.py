@@ -96,7 +96,6 @@ def rows_of(h5, split):
     return sorted(rows, key=lambda row: (key[row, 1], row))
 
 
-@pytest.mark.slow
 def test_each_folder_is_read_by_the_libraries_it_is_for(place, h5, tmp_path):
     done = subprocess.run(
         [sys.executable, READER, place],

@@ -8,6 +8,7 @@ import typer
 
 from radhar_cli.commands.options import resumable
 from radhar_cli.commands.tell import report, tell
+from radhar_cli.errors import FolderError
 from radhar_cli.processes import interrupts
 
 
@@ -110,3 +111,5 @@ def benchmark(
         files = benchmark_report(options, results).write(out)
         interrupts.complete(str(out))
     report(files=files, protocols={result.name: asdict(result) for result in results})
+    if all(result.why_not for result in results):
+        raise FolderError("; ".join(f"{result.name}: {result.why_not}" for result in results))

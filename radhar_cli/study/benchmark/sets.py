@@ -3,7 +3,7 @@
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -18,11 +18,11 @@ from radhar_cli.dataset.split import TEST, TRAIN
 from radhar_cli.errors import FolderError
 from radhar_cli.files.untrusted import read_json
 from radhar_cli.learning.images.classes import keep_known_classes
-from radhar_cli.learning.images.image_set import ImageSet, Pixels, labels_for
+from radhar_cli.learning.images.image_set import ImageSet, labels_for
 from radhar_cli.learning.images.opening import open_inputs
 from radhar_cli.learning.images.sequences import CLOUDS, COLUMNS
 from radhar_cli.learning.settings import TrainConfig
-from radhar_cli.numerics.arrays import Index, Levels
+from radhar_cli.numerics.arrays import Float, Index, Levels
 from radhar_cli.numerics.randomness import TRAINING, stream
 from radhar_cli.processes.progress import Progress
 from radhar_cli.study.benchmark.protocols import PERSONS, Protocol
@@ -194,15 +194,20 @@ def open_both(protocol: Protocol, config: TrainConfig, measured: Path, simulated
 
 @dataclass(frozen=True)
 class WithoutSnr:
-    """Clouds whose points have no SNR."""
+    """Clouds whose points have no SNR, and the joints behind them."""
 
-    pixels: Pixels
+    pixels: Any
 
     def read(self, row: int) -> Levels:
         """Clouds [T, points, 6] of a row; the column of the SNR is 0."""
-        clouds = self.pixels.read(row).copy()
+        clouds: Levels = self.pixels.read(row).copy()
         clouds[..., SNR_COLUMN] = 0
         return clouds
+
+    def joints(self, row: int) -> Float:
+        """Joints [T, joint, 3] of a row, m."""
+        joints: Float = self.pixels.joints(row)
+        return joints
 
 
 def _with_equal_snr(

@@ -59,7 +59,7 @@ pytest: $(DEV) ## The tests alone
 	$(PYTEST) $(SELECT)
 
 .PHONY: test
-test: $(DEV) $(LEARN) ## Lint, types, tests and the smoke run, in ten to fifteen minutes
+test: $(DEV) $(LEARN) ## Lint, types, tests and the smoke run, in fifteen minutes
 	$(MAKE) -j 2 pytest lint smoke
 
 .PHONY: test-all

@@ -183,9 +183,9 @@ def main() -> None:
 
 def _with_legend(cells: Image.Image) -> Image.Image:
     """Cells with the meaning of their colours and views above, and of empty ones."""
-    whole = Image.new("RGB", (cells.width, cells.height + 2 * LINE), "white")
-    whole.paste(cells, (0, 2 * LINE))
-    draw, x, font = ImageDraw.Draw(whole), 4.0, ImageFont.load_default(13)
+    sheet = Image.new("RGB", (cells.width, cells.height + 2 * LINE), "white")
+    sheet.paste(cells, (0, 2 * LINE))
+    draw, x, font = ImageDraw.Draw(sheet), 4.0, ImageFont.load_default(13)
     for words, colour in (
         ("approaching", RED),
         ("receding", BLUE),
@@ -200,7 +200,7 @@ def _with_legend(cells: Image.Image) -> Image.Image:
     )
     words += "a point or two of a person, and whose clutter removal leaves none of who is at rest."
     draw.text((4, LINE + 2), words, fill=BLACK, font=font)
-    return whole
+    return sheet
 
 
 if __name__ == "__main__":

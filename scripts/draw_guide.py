@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from draw_pictures import PICTURES, record_pictures, save_picture
+from draw_pictures import PICTURES, save_as_rgb, save_picture
 from PIL import Image
 
 from radhar_cli.commands.terminal import BarProgress
@@ -44,7 +44,7 @@ def draw_board(path: Path, _: Path | None) -> None:
     config = load_config(ROOT / "configs/boards/iwr1443.yaml", ["duration_s=2"])
     simulation = simulate(config, "walking")
     frames_panel.draw_frames(frames_panel.of_simulation(simulation), path)
-    _record(path)
+    save_as_rgb(path, BY)
 
 
 def draw_some_streams(path: Path, _: Path | None) -> None:
@@ -68,8 +68,8 @@ def draw_motion_files(path: Path, bvh: Path | None) -> None:
     if bvh is None:
         print(f"{path}: needs --bvh")
         return
-    own = {"files": [bvh.name], "start": 0, "playback_speed": 1, "mirror": 0}
-    classes = {"from_file": own}
+    recorded_walk = {"files": [bvh.name], "start": 0, "playback_speed": 1, "mirror": 0}
+    classes = {"from_file": recorded_walk}
     chosen = {
         "classes": classes,
         "activities": ["from_file"],
@@ -99,17 +99,8 @@ def _draw_below_each_other(simulations: list[Simulation], path: Path) -> None:
             )
             with Image.open(Path(folder) / "a.png") as page:
                 pages.append(np.asarray(page.convert("RGB")))
-    Image.fromarray(np.concatenate(pages)).save(path, optimize=True)
-    _record(path)
-
-
-def _record(path: Path) -> None:
-    """Save a picture as RGB, and record it."""
-    with Image.open(path) as picture:
-        whole = picture.convert("RGB")
-    whole.save(path, optimize=True)
-    record_pictures([path], BY)
-    print(path)
+    Image.fromarray(np.concatenate(pages)).save(path)
+    save_as_rgb(path, BY)
 
 
 def main() -> None:
@@ -119,9 +110,9 @@ def main() -> None:
     )
     parser.add_argument("names", nargs="*", metavar="NAME", help="pictures; the default is all")
     parser.add_argument("--bvh", type=Path, help="motion file of motion_files.png")
-    given = parser.parse_args()
-    for name in given.names or DRAW:
-        DRAW[name](PICTURES / name, given.bvh)
+    options = parser.parse_args()
+    for name in options.names or DRAW:
+        DRAW[name](PICTURES / name, options.bvh)
 
 
 if __name__ == "__main__":

@@ -147,16 +147,16 @@ def draw_falls(index: int, out: Path) -> None:
 
 def _tiled(cells: list[list[Image.Image]]) -> Image.Image:
     """Pictures of one size in rows, of 64 colours."""
-    whole = np.concatenate([np.concatenate([np.asarray(c) for c in row], axis=1) for row in cells])
-    return Image.fromarray(whole).quantize(64, dither=Image.Dither.NONE)
+    sheet = np.concatenate([np.concatenate([np.asarray(c) for c in row], axis=1) for row in cells])
+    return Image.fromarray(sheet).quantize(64, dither=Image.Dither.NONE)
 
 
 def _with_legend(tiles: Image.Image) -> Image.Image:
     """Pictures with the meaning of their colours and views in a line above."""
     side = "above from the side, the radar on the right"
     words = f"{side}; below from the radar, which the person faces at first"
-    whole = Image.new("RGB", (tiles.width, tiles.height + 26), "white")
-    draw, x, font = ImageDraw.Draw(whole), 6.0, ImageFont.load_default(16)
+    sheet = Image.new("RGB", (tiles.width, tiles.height + 26), "white")
+    draw, x, font = ImageDraw.Draw(sheet), 6.0, ImageFont.load_default(16)
     for text, colour in (
         ("right side", COLOURS["right"]),
         ("left side", COLOURS["left"]),
@@ -164,8 +164,8 @@ def _with_legend(tiles: Image.Image) -> Image.Image:
     ):
         draw.text((x, 3), text, fill=colour, font=font)
         x += draw.textlength(text, font) + 24
-    whole.paste(tiles, (0, 26))
-    return whole.quantize(64, dither=Image.Dither.NONE)
+    sheet.paste(tiles, (0, 26))
+    return sheet.quantize(64, dither=Image.Dither.NONE)
 
 
 def main() -> None:

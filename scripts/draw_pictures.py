@@ -36,9 +36,14 @@ LARGE = {
 def save_picture(figure: Figure, path: Path, dpi: float, by: str = "") -> None:
     """Save a figure as RGB of all its colours, and record it; `by` is the command that draws it."""
     figure.savefig(path, dpi=dpi)
+    save_as_rgb(path, by)
+
+
+def save_as_rgb(path: Path, by: str) -> None:
+    """Save a picture anew as RGB of all its colours, and record it."""
     with Image.open(path) as picture:
-        whole = picture.convert("RGB")
-    whole.save(path, optimize=True)
+        pixels = picture.convert("RGB")
+    pixels.save(path, optimize=True)
     record_pictures([path], by)
     print(path)
 
@@ -86,9 +91,9 @@ def main(arguments: list[str] | None = None) -> None:
     parser.add_argument("names", nargs="*", metavar="PICTURE", help="below docs/images")
     parser.add_argument("--by", default="", help="what made them")
     parser.add_argument("--commit", default="", help="at which; the default is that of the tree")
-    given = parser.parse_args(arguments)
-    if given.names:
-        record_pictures([PICTURES / name for name in given.names], given.by, given.commit)
+    options = parser.parse_args(arguments)
+    if options.names:
+        record_pictures([PICTURES / name for name in options.names], options.by, options.commit)
         return
     lines = []
     for name, entry in read_record().items():

@@ -6,7 +6,7 @@ from typing import Annotated
 
 import typer
 
-from radhar_cli.commands.options import resumable
+from radhar_cli.commands.options import jobs_option, resumable
 from radhar_cli.commands.tell import report, tell
 from radhar_cli.errors import FolderError
 from radhar_cli.processes import interrupts
@@ -49,12 +49,7 @@ def benchmark(
     ] = None,
     jobs: Annotated[
         int | None,
-        typer.Option(
-            "--jobs",
-            "-j",
-            min=1,
-            help="Number of processes that prepare and simulate; one for each core.",
-        ),
+        jobs_option("Number of processes that prepare and simulate; one for each core."),
     ] = None,
     dry_run: Annotated[
         bool,
@@ -110,6 +105,6 @@ def benchmark(
                 tell(line)
         files = benchmark_report(options, results).write(out)
         interrupts.complete(str(out))
-    report(files=files, protocols={result.name: asdict(result) for result in results})
+    report(files=files, protocols={r.name: asdict(r) | {"simulated": r.simulator} for r in results})
     if all(result.why_not for result in results):
         raise FolderError("; ".join(f"{result.name}: {result.why_not}" for result in results))

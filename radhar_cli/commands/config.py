@@ -67,7 +67,7 @@ def init(
 
       radhar config init --radar list
     """
-    from radhar_cli.config.documents import name_of_written, preset_called
+    from radhar_cli.config.documents import find_preset, name_of_written
     from radhar_cli.config.starting_file import (
         MINIMAL,
         as_commented_yaml,
@@ -102,7 +102,7 @@ def init(
     if preset is not None:
         write_text(out, of_preset(preset))
         report(file=out)
-        train = (preset_called(preset) or "").startswith("train/")
+        train = (find_preset(preset) or "").startswith("train/")
         tell(f"  then        radhar {'train DATA --config' if train else 'generate'} {out} -o OUT")
         return
     write_text(out, MINIMAL if minimal else as_commented_yaml(_kind(train)))

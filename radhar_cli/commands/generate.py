@@ -7,7 +7,14 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from radhar_cli.commands.options import Overrides, StartOver, Tolerance, resumable, with_tolerance
+from radhar_cli.commands.options import (
+    Overrides,
+    StartOver,
+    Tolerance,
+    jobs_option,
+    resumable,
+    with_tolerance,
+)
 from radhar_cli.commands.tell import for_each_radar, tell
 from radhar_cli.errors import ConfigError
 from radhar_cli.processes import interrupts
@@ -27,12 +34,9 @@ def generate(
     tolerance: Tolerance = None,
     jobs: Annotated[
         int | None,
-        typer.Option(
-            "--jobs",
-            "-j",
-            min=1,
-            help="Number of worker processes. The default is one for each core, fewer for data "
-            "sets too small to gain from as many.",
+        jobs_option(
+            "Number of worker processes. The default is one for each core, fewer for data "
+            "sets too small to gain from as many."
         ),
     ] = None,
     batch: Annotated[

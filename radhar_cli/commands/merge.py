@@ -5,7 +5,7 @@ from typing import Annotated
 
 import typer
 
-from radhar_cli.commands.options import resumable
+from radhar_cli.commands.options import jobs_option, resumable
 from radhar_cli.commands.tell import for_each_radar
 from radhar_cli.processes import interrupts
 
@@ -18,12 +18,7 @@ def merge(
     ] = None,
     jobs: Annotated[
         int | None,
-        typer.Option(
-            "--jobs",
-            "-j",
-            min=1,
-            help="Number of processes that write PNGs. The default is one for each core.",
-        ),
+        jobs_option("Number of processes that write PNGs. The default is one for each core."),
     ] = None,
 ) -> None:
     """Merge the parts of a data set, which are not changed.

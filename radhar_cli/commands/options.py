@@ -3,7 +3,7 @@
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, TypeAlias
+from typing import TYPE_CHECKING, Annotated, Any, TypeAlias
 
 import typer
 
@@ -60,6 +60,15 @@ Tolerance: TypeAlias = Annotated[
         "engine.tolerance_db.",
     ),
 ]
+
+
+def jobs_option(text: str) -> Any:
+    """Return the option --jobs of a command.
+
+    Args:
+        text: Help: processes that are counted, and their number without the option.
+    """
+    return typer.Option("--jobs", "-j", min=1, help=text)
 
 
 def find_activity(name: str | None, config: "Config", says_word: bool = True) -> "ActivityOfPeople":

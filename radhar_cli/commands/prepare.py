@@ -5,7 +5,7 @@ from typing import Annotated
 
 import typer
 
-from radhar_cli.commands.options import StartOver, resumable
+from radhar_cli.commands.options import StartOver, jobs_option, resumable
 from radhar_cli.commands.tell import counted, report, tell
 from radhar_cli.errors import ConfigError
 from radhar_cli.processes import interrupts
@@ -32,7 +32,7 @@ def prepare(
     ] = None,
     jobs: Annotated[
         int | None,
-        typer.Option("--jobs", "-j", min=1, help="Number of worker processes; one for each core."),
+        jobs_option("Number of worker processes; one for each core."),
     ] = None,
     overwrite: StartOver = False,
 ) -> None:

@@ -164,6 +164,7 @@ def print_plan(config: "AnyConfig", jobs: int | None) -> None:
     from radhar_cli.dataset.estimate import CHECK_SHARE, DRY_RUN_S, AtLeast, Estimate, plan_build
     from radhar_cli.dataset.layout import Rows
     from radhar_cli.dataset.split import split_rows, split_warnings
+    from radhar_cli.scene.products.acceleration import describe_acceleration
     from radhar_cli.scene.products.table import plan_images
 
     rows = Rows.of(config)
@@ -194,7 +195,9 @@ def print_plan(config: "AnyConfig", jobs: int | None) -> None:
     checked = f"{build_plan.checked} of {len(rows)} checked"
     tell(f"{samples}\nscenes      {checked}: {build_plan.redrawn} drawn again{short}")
     _tell_cost(build_plan)
-    _tell_speed(config, build_plan.training_seconds)
+    if acceleration := describe_acceleration(config):
+        tell(f"            {acceleration}")
+    _tell_training(config, build_plan.training_seconds)
     for message in warnings:
         tell(f"warning: {message}")
     tell("nothing was written")
@@ -244,8 +247,8 @@ def _tell_cost(build_plan: "BuildPlan") -> None:
         )
 
 
-def _tell_speed(config: "Config", seconds: float) -> None:
-    """Print what compiled code does, and what training costs.
+def _tell_training(config: "Config", seconds: float) -> None:
+    """Print the time of training on a map, and that with images of the radar's own size.
 
     Args:
         config: that of the data set.
@@ -253,11 +256,8 @@ def _tell_speed(config: "Config", seconds: float) -> None:
     """
     from radhar_cli.config.first_level import size_of_frames
     from radhar_cli.dataset.estimate import EPOCHS
-    from radhar_cli.scene.products.acceleration import describe_acceleration
     from radhar_cli.schema.number import nominal
 
-    if acceleration := describe_acceleration(config):
-        tell(f"            {acceleration}")
     height, width = config.image.size_px
     shape = f"{height} x {width} px"
     tell(f"training    some {_time(seconds)} of a core: {EPOCHS} epochs of a map's images, {shape}")

@@ -89,8 +89,8 @@ def _fill_in(document: Document, places: Places, folder: Path, where: str) -> No
             value["cfg"] = cfg_text(value["cfg"], folder, places.get(f"{key}.cfg", where))
 
 
-def preset_called(path: str) -> str | None:
-    """Preset that a path names as documents do, by its name, or by the last part of its name."""
+def find_preset(path: str) -> str | None:
+    """Find the preset that a path names: as documents do, by its name, or by its last part."""
     name = path.removeprefix("configs/").removesuffix(".yaml")
     if name in PRESETS:
         return name
@@ -109,7 +109,7 @@ def find_config(path: Path) -> Path:
     name = path.as_posix()
     if path.exists() or (path.suffix and not name.startswith("configs/")):
         return path
-    preset = preset_called(name)
+    preset = find_preset(name)
     if preset is None and not path.suffix and (close := did_you_mean(name, PRESETS, "")):
         raise ConfigError(f"{path}: no such file, and no config of radhar; {close}")
     return path if preset is None else PRESETS[preset]

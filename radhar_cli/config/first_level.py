@@ -320,16 +320,16 @@ class Request(Section):
         return copy
 
     def _fill_size(self) -> None:
-        """Give images the width of a stream's time steps, or the size of an array's own maps."""
+        """Give images the width of a stream's time steps, or, of maps of frames, a pixel a cell."""
         height, width = self.image.size_px
         if self.duration_s is None:
             return
         seconds, is_sheet = nominal(self.duration_s), bool({*FRAME_MAPS} & {*self.maps})
-        is_usual = is_sheet or self.image.kind == "cfar"  # whose window counts pixels
+        has_usual_size = is_sheet or self.image.kind == "cfar"  # whose window counts pixels
         if self.stream is not None:
             if height == width:
                 width = self.stream.columns_of(seconds)
-        elif "size_px" not in self.image.model_fields_set and not is_usual:
+        elif "size_px" not in self.image.model_fields_set and not has_usual_size:
             height, width = size_of_frames(self.radar, seconds) or (height, width)
         if (height, width) != self.image.size_px:
             size = {"size_px": (height, width)}

@@ -20,9 +20,9 @@ from radhar_cli.config.documents import (
     BASE,
     PRESETS,
     cfg_text,
+    find_preset,
     name_of_radar,
     name_of_written,
-    preset_called,
     read_on_bases,
 )
 from radhar_cli.config.identity import yaml_text
@@ -279,7 +279,7 @@ def of_preset(name: str) -> str:
     Raises:
         ConfigError: there is no such config; names one like it.
     """
-    preset = preset_called(name)
+    preset = find_preset(name)
     if preset is None:
         listed = f"should be one of {len(PRESETS)}; radhar config list shows them"
         hint = did_you_mean(name.removeprefix("configs/"), PRESETS, listed)

@@ -13,7 +13,7 @@ from matplotlib.image import AxesImage
 from radhar_cli.config.image import ImageConfig
 from radhar_cli.echo.bodies.motion_paths import point_delay
 from radhar_cli.figures.page import page, write_figure
-from radhar_cli.figures.style import SIGNED, decibels_in_words, describe_band, rounded
+from radhar_cli.figures.style import SIGNED, decibels_in_words, describe_band, write_rounded
 from radhar_cli.numerics.arrays import Float
 from radhar_cli.processing.angle_time import ANGLE_TIME_KINDS
 from radhar_cli.processing.image import decibels
@@ -173,14 +173,14 @@ def describe_scene(scene: Scene, waveform: Waveform) -> list[str]:
     """Describe a scene: activity, radar, surroundings, noise and seed, a few words each."""
     snr, figure = scene.config.snr_db, scene.config.receiver.noise_figure_db
     noise = "no noise" if figure is None else f"noise figure {decibels_in_words(nominal(figure))}"
-    band = f"{rounded(waveform.fc / 1e9, 5)} GHz CW"
+    band = f"{write_rounded(waveform.fc / 1e9, 5)} GHz CW"
     if scene.radar.has_range:
         band = describe_band(waveform.fc, waveform.fc + waveform.bandwidth)
         band += " impulses" if scene.radar.kind == "impulse" else ""
     rooms = scene.config.room.faces is not None
     return [
         f"{scene.activity.label} {scene.activity.slug.replace('_', ' ')}",
-        f"{band}, PRF {rounded(waveform.prf)} Hz",
+        f"{band}, PRF {write_rounded(waveform.prf)} Hz",
         "through a wall" if scene.config.wall else "in a room" if rooms else "free space",
         noise if snr is None else f"SNR {decibels_in_words(nominal(snr))}",
         f"seed {scene.config.seed}",

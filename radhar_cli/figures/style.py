@@ -52,7 +52,7 @@ def distinct_colours(count: int) -> list[Colour]:
     return colours[:count]
 
 
-def rounded(value: float, digits: int = 3) -> str:
+def write_rounded(value: float, digits: int = 3) -> str:
     """Write a number with so many significant digits, without an exponent."""
     return f"{float(f'{value:.{digits}g}') + 0.0:.10g}"
 

@@ -211,8 +211,8 @@ def draw_shots(data: EvalSet, k: int, seed: int, repeat: int) -> ShotDraw:
     label = images.samples.label[order]
     of_class = (order[may_learn & (label == c)] for c in range(len(images.classes)))
     labelled = np.concatenate([rows[:k] for rows in of_class])
-    others = order[~may_learn] if apart else data.rows
-    return ShotDraw(labelled, np.sort(np.setdiff1d(others, labelled)))
+    candidates = order[~may_learn] if apart else data.rows
+    return ShotDraw(labelled, np.sort(np.setdiff1d(candidates, labelled)))
 
 
 def find_short_class(data: EvalSet, draw: ShotDraw, k: int) -> str | None:

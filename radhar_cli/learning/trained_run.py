@@ -103,7 +103,7 @@ class TrainedRun:
             FolderError: an array of another shape or type.
         """
         if isinstance(inputs, np.ndarray):
-            stored = torch.from_numpy(self._as_stored(inputs))
+            stored = torch.from_numpy(self._arrange_as_stored(inputs))
             starts = range(0, len(stored), PREDICT_BATCH)
             batches = [self(stored[start : start + PREDICT_BATCH]).cpu() for start in starts]
             return np.concatenate([batch.numpy() for batch in batches])
@@ -111,8 +111,8 @@ class TrainedRun:
             outputs: Tensor = self.network(self.metadata.normalisation(inputs.to(self.device)))
             return self.metadata.task.predict(outputs)
 
-    def _as_stored(self, inputs: NDArray[Any]) -> NDArray[Any]:
-        """Array [N, C, H, W] of an array [N, *input_shape].
+    def _arrange_as_stored(self, inputs: NDArray[Any]) -> NDArray[Any]:
+        """Arrange an array [N, *input_shape] as data sets store it, [N, C, H, W].
 
         Raises:
             FolderError: it has another shape or type.

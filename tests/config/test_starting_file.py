@@ -12,7 +12,7 @@ from helpers.command_line import ROOT, ok, radhar
 
 from radhar_cli.config import Config, load_config
 from radhar_cli.config.built_in_radars import device_of
-from radhar_cli.config.documents import PRESETS, RADARS, preset_called
+from radhar_cli.config.documents import PRESETS, RADARS, find_preset
 from radhar_cli.config.reading import load_section, load_sections
 from radhar_cli.config.room import WallConfig
 from radhar_cli.config.starting_file import WIDTH, as_commented_yaml, of_board, of_preset
@@ -154,7 +154,7 @@ def test_a_preset_is_named_as_documents_name_its_file() -> None:
 @pytest.mark.parametrize("name", PRESETS)
 def test_the_last_part_of_its_name_is_enough(name: str) -> None:
     last = name.rpartition("/")[2]
-    assert preset_called(last) == (last if last in PRESETS else name)
+    assert find_preset(last) == (last if last in PRESETS else name)
 
 
 @pytest.mark.parametrize(

@@ -1,4 +1,4 @@
-"""One style of figures: colours that differ, numbers that are rounded, left on the left."""
+"""One style of figures: colours that differ, numbers that are write_rounded, left on the left."""
 
 from itertools import combinations
 
@@ -18,7 +18,7 @@ from radhar_cli.figures.style import (
     describe_band,
     distinct_colours,
     joint_colours,
-    rounded,
+    write_rounded,
 )
 
 
@@ -64,7 +64,7 @@ def test_a_band_has_the_decimals_that_tell_its_ends_apart(
     ("value", "text"), [(7352.9, "7350"), (12345, "12300"), (0.03456, "0.0346"), (-0.0, "0")]
 )
 def test_numbers_are_rounded_without_exponents(value: float, text: str) -> None:
-    assert rounded(value) == text
+    assert write_rounded(value) == text
 
 
 @pytest.mark.parametrize(("value", "text"), [(25.3, "25 dB"), (2.53, "2.5 dB"), (-0.01, "0 dB")])

@@ -43,7 +43,7 @@ def describe_protocol(result: ProtocolResult) -> str:
     target = "joints" if protocol.find_joints else f"{len(result.classes)} classes"
     left_out = f" ({len(result.left_out)} left out)" if result.left_out else ""
     split = "persons in turn" if protocol.split == PERSONS else "the authors' test part"
-    return f"{protocol.map} to {target}{left_out}, {split}; simulated: {result.simulated}"
+    return f"{protocol.map} to {target}{left_out}, {split}; simulated: {result.simulator}"
 
 
 def _value_in_words(row: RowResult, protocol: Protocol) -> str:
@@ -89,7 +89,7 @@ def benchmark_report(options: BenchmarkOptions, results: Sequence[ProtocolResult
 
 def _tuned_on(result: ProtocolResult) -> str | None:
     """Measured data that tuned the simulation; None of another simulator's."""
-    return result.protocol.tuned_on if result.is_ours else None
+    return result.protocol.tuned_on if result.simulated is None else None
 
 
 def _score_of(protocol: Protocol) -> str:
@@ -100,7 +100,7 @@ def _score_of(protocol: Protocol) -> str:
 def _numbers(result: ProtocolResult) -> dict[str, Any]:
     """Numbers of a protocol for programs."""
     return {
-        "simulated": result.simulated,
+        "simulated": result.simulator,
         "tuned_on": _tuned_on(result),
         "split": result.protocol.split,
         "score": _score_of(result.protocol),
@@ -116,7 +116,7 @@ def _csv_rows(result: ProtocolResult) -> list[list[object]]:
     return [
         [
             result.name,
-            result.simulated,
+            result.simulator,
             row.row,
             row.learned_from,
             _score_of(result.protocol),

@@ -43,7 +43,7 @@ class MeasuredSource:
     recordings: int | None = None  # in the download
 
 
-def find_measured(protocol: Protocol, folder: Path, out: Path) -> MeasuredSource | None:
+def find_measured_set(protocol: Protocol, folder: Path, out: Path) -> MeasuredSource | None:
     """Find the measured data set of a protocol below a folder; None where it is not there.
 
     Args:
@@ -99,7 +99,7 @@ def _is_prepared(folder: Path, protocol: Protocol) -> bool:
     return not protocol.part or Path(str(about.get("folder"))).name.lower() == protocol.part.lower()
 
 
-def prepare_measured(source: MeasuredSource, out: Path, jobs: int, progress: Progress) -> Path:
+def prepare_measured_set(source: MeasuredSource, out: Path, jobs: int, progress: Progress) -> Path:
     """Data set of a source, prepared in `out` where it is a download.
 
     Raises:

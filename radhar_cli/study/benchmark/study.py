@@ -16,9 +16,9 @@ from radhar_cli.study.benchmark.engine import SIMULATION, Bench, RowResult
 from radhar_cli.study.benchmark.protocols import PERSONS, Protocol, choose_protocols
 from radhar_cli.study.benchmark.sets import (
     MeasuredSource,
-    find_measured,
+    find_measured_set,
     open_both,
-    prepare_measured,
+    prepare_measured_set,
     simulate,
     simulation_config,
 )
@@ -65,12 +65,16 @@ class ProtocolResult:
 
     name: str
     protocol: Protocol
-    simulated: str  # name of the simulated data set
-    is_ours: bool = True  # whether radhar simulated it
+    simulated: Path | None  # data set of another simulator; None is radhar's own simulation
     classes: tuple[str, ...] = ()
     left_out: tuple[str, ...] = ()  # measured classes that the simulation lacks
     rows: list[RowResult] = field(default_factory=list)
     why_not: str = ""
+
+    @property
+    def simulator(self) -> str:
+        """Name of the simulator: radhar, or the folder of the other one's data set."""
+        return str(self.simulated or RADHAR)
 
 
 class FoundProtocol(NamedTuple):
@@ -106,7 +110,7 @@ def _find_protocol(name: str, protocol: Protocol, options: BenchmarkOptions) -> 
     """Find the measured data set of a protocol."""
     folder = options.folder
     try:
-        source = find_measured(protocol, folder, options.out)
+        source = find_measured_set(protocol, folder, options.out)
     except RadharError as error:
         return FoundProtocol(name, protocol, None, str(error))
     why_not = "" if source else f"{folder}: holds no {protocol.recipe} {protocol.part}".rstrip()
@@ -116,12 +120,7 @@ def _find_protocol(name: str, protocol: Protocol, options: BenchmarkOptions) -> 
 def run_benchmark(options: BenchmarkOptions, progress: Progress) -> Iterator[ProtocolResult]:
     """Yield the rows of every protocol; what an earlier call has trained is not trained again."""
     for choice in find_protocols(options):
-        result = ProtocolResult(
-            choice.name,
-            choice.protocol,
-            str(options.simulated or RADHAR),
-            options.simulated is None,
-        )
+        result = ProtocolResult(choice.name, choice.protocol, options.simulated)
         if choice.source is None:
             yield replace(result, why_not=choice.why_not)
             continue
@@ -140,7 +139,7 @@ def _open_bench(
 ) -> Bench:
     """Prepare, simulate and open the two data sets of a protocol."""
     out, jobs = options.out, options.jobs
-    measured = prepare_measured(source, out / "measured" / protocol.data, jobs, progress)
+    measured = prepare_measured_set(source, out / "measured" / protocol.data, jobs, progress)
     simulated = options.simulated
     if simulated is None:
         config = simulation_config(protocol, options.per_class)

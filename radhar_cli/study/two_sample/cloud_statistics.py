@@ -87,12 +87,12 @@ def chamfer_distances(clouds: list[Float], measured: list[Float], same: bool) ->
     """
     distances = np.full(len(clouds), np.nan)
     for number, cloud in enumerate(clouds):
-        others = [
+        other_clouds = [
             m for place, m in enumerate(measured) if len(m) and not (same and place == number)
         ]
-        if not len(cloud) or not others:
+        if not len(cloud) or not other_clouds:
             continue
-        every = np.concatenate(others)
+        every = np.concatenate(other_clouds)
         reference = every[:: -(-len(every) // MOST_POINTS)]
         to_reference = np.mean(cKDTree(reference).query(cloud)[0])
         from_reference = np.mean(cKDTree(cloud).query(reference)[0])

@@ -26,7 +26,7 @@ from radhar_cli.study.benchmark import engine
 from radhar_cli.study.benchmark.engine import draw_labelled, joint_errors, parse_rows
 from radhar_cli.study.benchmark.protocols import PERSONS, PROTOCOLS
 from radhar_cli.study.benchmark.sets import (
-    find_measured,
+    find_measured_set,
     learning_set,
     open_both,
     simulation_config,
@@ -196,14 +196,14 @@ def test_fewer_labels_are_among_more(theirs: Path) -> None:
 
 
 def test_data_sets_that_are_prepared_are_taken_as_they_are(theirs: Path) -> None:
-    source = find_measured(PROTOCOLS["mars"], theirs, theirs / "out")
+    source = find_measured_set(PROTOCOLS["mars"], theirs, theirs / "out")
     assert source is not None
     assert source.dataset == theirs / "mars"
-    assert find_measured(PROTOCOLS["glasgow"], theirs, theirs / "out") is None
+    assert find_measured_set(PROTOCOLS["glasgow"], theirs, theirs / "out") is None
 
 
 def test_what_a_benchmark_has_prepared_is_no_download(theirs: Path) -> None:
-    assert find_measured(PROTOCOLS["mars"], theirs, theirs / "mars") is None
+    assert find_measured_set(PROTOCOLS["mars"], theirs, theirs / "mars") is None
 
 
 def test_a_shift_of_the_body_is_no_error_about_the_hip() -> None:
@@ -301,7 +301,7 @@ def test_a_part_of_a_download_is_a_protocol(tmp_path: Path) -> None:
     for part in ("CSub", "CSet"):
         write_unimmhar(tmp_path / "UniMM-HAR" / part)
     for name in ("unimmhar_csub", "unimmhar_cset"):
-        source = find_measured(PROTOCOLS[name], tmp_path, tmp_path / "out")
+        source = find_measured_set(PROTOCOLS[name], tmp_path, tmp_path / "out")
         assert source is not None
         assert source.preparation is not None
         assert source.preparation.folder.name == PROTOCOLS[name].part

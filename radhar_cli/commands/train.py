@@ -103,8 +103,13 @@ def train(
 
     refuse_output_inside_data(out, [*data, *([init] if init else [])])
     if shots is not None:
-        said = {"--config": config, "--model": model, "--target": target, "--overwrite": overwrite}
-        start = _start_of_shots(init, {**said, "--tensorboard": tensorboard})
+        without_effect = {
+            "--config": config,
+            "--model": model,
+            "--target": target,
+            "--overwrite": overwrite,
+        }
+        start = _start_of_shots(init, {**without_effect, "--tensorboard": tensorboard})
         reading = EvalOptions("all", map=map_, resize=resize, names=read_classes(classes))
         _train_few_shots(data, start, out, _parse_shots(shots), repeats, set_ or [], reading)
         return

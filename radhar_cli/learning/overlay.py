@@ -4,6 +4,7 @@ from pathlib import Path
 
 import numpy as np
 
+from radhar_cli.config.image import DEFAULT_COLOUR_MAP
 from radhar_cli.figures.clouds import CloudPicture, clouds_png
 from radhar_cli.figures.page import png_bytes
 from radhar_cli.figures.stream_page import LabelledMap, draw_labelled_maps
@@ -48,7 +49,7 @@ def draw_overlay(
             )
             for row in rows
         ]
-        colours = metadata.colours or "viridis"
+        colours = metadata.colours or DEFAULT_COLOUR_MAP
         return png_bytes(draw_labelled_maps(maps, estimates.names, colours, "column"))
     height, width = metadata.size
     drawn = [Picture(_levels(inputs, row), (0, width, 0, height), words[row]) for row in rows]

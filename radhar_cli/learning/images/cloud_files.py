@@ -76,8 +76,8 @@ def open_cloud_file(path: Path, size: tuple[int, int], settings: Overrides = ())
     elif is_point_capture(path):
         raise CaptureError(f"{path}: is a dump of a board; radhar import {path} -o points.h5 first")
     else:
-        said = load_section(PointTableSettings, None, settings)
-        clips = [_frames_of_clip(path, clip) for clip in read_clips(path, said)]
+        table_settings = load_section(PointTableSettings, None, settings)
+        clips = [_frames_of_clip(path, clip) for clip in read_clips(path, table_settings)]
     places = [
         (number, first)
         for number, clip in enumerate(clips)

@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 from sklearn.metrics import confusion_matrix
 
+from radhar_cli.config.image import DEFAULT_COLOUR_MAP
 from radhar_cli.figures.evaluation import confusion_png
 from radhar_cli.figures.page import png_bytes
 from radhar_cli.figures.stream_page import AT_REST, LabelledMap, draw_labelled_maps
@@ -143,7 +144,7 @@ def _draw_streams(
         )
         for stream in streams[:DRAWN]
     ]
-    figure = draw_labelled_maps(maps, predictions.names, images.colours or "viridis")
+    figure = draw_labelled_maps(maps, predictions.names, images.colours or DEFAULT_COLOUR_MAP)
     caption = f"True labels and those that were predicted, {evaluation.title}."
     evaluation.figure("streams", caption, png_bytes(figure))
 

@@ -4,10 +4,12 @@
 A fork has the same limits, and may crash as freely, for a hundredth of the processor time.
 """
 
+import os
 import pickle
 import subprocess
 import sys
 from collections.abc import Sequence
+from threading import get_ident
 from typing import Any
 
 SERVER = """
@@ -54,30 +56,43 @@ while True:
 class ForkServer:
     """A process that runs programs in forks of itself, one after another.
 
-    It starts with the first program, and ends when its input is closed.
+    It starts with the first program. Each process and thread that asks has a server of its own: by
+    the pipes of its parent, a worker that loads batches would take answers to other requests.
     """
 
     def __init__(self) -> None:
-        self._server: subprocess.Popen[bytes] | None = None
+        self._servers: dict[tuple[int, int], subprocess.Popen[bytes]] = {}
 
     def run(
         self, command: Sequence[str], *, input: bytes, **_: Any
     ) -> subprocess.CompletedProcess[bytes]:
         """Stand for `subprocess.run` of a Python file that has no arguments."""
-        if self._server is None:
-            self._server = subprocess.Popen(
+        asker = os.getpid(), get_ident()
+        if asker not in self._servers:
+            self._servers[asker] = subprocess.Popen(
                 [sys.executable, "-P", "-c", SERVER],
                 stdin=subprocess.PIPE,
                 stdout=subprocess.PIPE,
                 start_new_session=True,
             )
-        assert self._server.stdin is not None
-        assert self._server.stdout is not None
-        pickle.dump((command[-1], input), self._server.stdin)
-        self._server.stdin.flush()
-        return subprocess.CompletedProcess([*command], *pickle.load(self._server.stdout))
+        server = self._servers[asker]
+        assert server.stdin is not None
+        assert server.stdout is not None
+        try:
+            pickle.dump((command[-1], input), server.stdin)
+            server.stdin.flush()
+            answer = pickle.load(server.stdout)
+        except BaseException:  # an alarm, say: the next request would get this answer
+            self._end(asker)
+            raise
+        return subprocess.CompletedProcess([*command], *answer)
 
     def close(self) -> None:
-        """End the process, if it has started."""
-        if self._server is not None:
-            self._server.communicate()
+        """Kill the servers of this process: a fork may hold their inputs open for ever."""
+        for asker in [*self._servers]:
+            if asker[0] == os.getpid():
+                self._end(asker)
+
+    def _end(self, asker: tuple[int, int]) -> None:
+        with self._servers.pop(asker) as server:
+            server.kill()

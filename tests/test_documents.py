@@ -62,6 +62,7 @@ LONG = {
     "benchmark_simulators.md",
     "board_profiles.md",
     "boards.md",
+    "fall_detection.md",
     "frames.md",
     "impulse.md",
     "maps.md",

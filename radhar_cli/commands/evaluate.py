@@ -76,6 +76,8 @@ def evaluate(
 
       radhar eval runs/quickstart datasets/quickstart --tsne
 
+      radhar eval runs/falls datasets/falls --events falling,falling_off_seat,falling_on_rising
+
     Each run is evaluated on each data set, for example to compare networks, or to test one that was
     trained at a single SNR at all others.
     """

@@ -316,7 +316,7 @@ def alarms_png(
     axes.set_xlim(left=-0.1)
     axes.xaxis.set_major_formatter(FormatStrFormatter("%g"))
     axes.grid(alpha=0.3)
-    axes.legend(loc="lower right")
+    axes.legend(loc="lower center")
     axes.set_title(title)
     return png_bytes(figure)
 

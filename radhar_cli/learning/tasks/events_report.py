@@ -176,7 +176,8 @@ def _show(evaluation: Evaluation, numbers: Mapping[str, Any]) -> None:
     caption = (
         f"Events found ({names}) over false alarms, threshold by threshold, {evaluation.title}. "
         f"An alarm is of an event if it begins from {numbers['early_s']:g} s before it to "
-        f"{numbers['late_s']:g} s after its end."
+        f"{numbers['late_s']:g} s after its end. At low thresholds alarms go on for so long that "
+        "few begin at an event."
     )
     evaluation.figure("events", caption, png)
 

@@ -44,7 +44,7 @@ class ScoredRecording:
 class Alarms:
     """Alarms of a recording at a threshold, in columns."""
 
-    found: list[int | None]  # [event] column at which its alarm begins; None where it is missed
+    of_events: list[int | None]  # [event] column at which its alarm begins; None where it is missed
     false: list[int]  # columns at which false alarms begin
 
 
@@ -100,7 +100,7 @@ def match_alarms(
     An alarm finds the first event that it may be of and that has none yet; where all of these have
     one, it is neither found nor false.
     """
-    found: list[int | None] = [None] * len(recording.events)
+    of_events: list[int | None] = [None] * len(recording.events)
     false = list[int]()
     early, late = rules.early_s / column_s, rules.late_s / column_s
     for start in begin_alarms(recording.score, threshold, rules.merge_s / column_s):
@@ -109,12 +109,12 @@ def match_alarms(
             for place, event in enumerate(recording.events)
             if event.start - early <= start <= event.stop + late
         ]
-        missing = [place for place in places if found[place] is None]
+        missing = [place for place in places if of_events[place] is None]
         if missing:
-            found[missing[0]] = start
+            of_events[missing[0]] = start
         elif not places:
             false.append(start)
-    return Alarms(found, false)
+    return Alarms(of_events, false)
 
 
 @dataclass(frozen=True)
@@ -150,7 +150,7 @@ def count_events(
     starts = [
         (event.start, start)
         for recording, one in zip(recordings, alarms, strict=True)
-        for event, start in zip(recording.events, one.found, strict=True)
+        for event, start in zip(recording.events, one.of_events, strict=True)
     ]
     return EventCounts(
         threshold,

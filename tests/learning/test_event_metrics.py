@@ -96,10 +96,10 @@ def test_alarms_close_to_each_other_are_one_and_a_long_one_is_one() -> None:
 
 def test_an_alarm_finds_one_event_and_a_second_alarm_of_an_event_is_not_false() -> None:
     two = recording(with_falls(200, 225), with_alarms(212))
-    assert match_alarms(two, 0.5, COLUMN_S, RULES).found == [212, None]
+    assert match_alarms(two, 0.5, COLUMN_S, RULES).of_events == [212, None]
     again = recording(with_falls(200), with_alarms(201, 225))
     alarms = match_alarms(again, 0.5, COLUMN_S, RULES)
-    assert (alarms.found, alarms.false) == ([201], [])
+    assert (alarms.of_events, alarms.false) == ([201], [])
 
 
 def test_falls_of_several_kinds_in_a_row_are_one_event() -> None:

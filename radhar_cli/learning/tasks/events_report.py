@@ -83,8 +83,8 @@ def summarise_events(numbers: Mapping[str, Any]) -> str:
         return f"no {names} in these data, so that recall is not measured; {alarms}"
     recall = numbers["recall"]
     interval = interval_in_words(recall["share_95"], recall["interval_over"])
-    median, most = numbers["delay_median_s"], numbers["delay_90_s"]
-    delay = "" if median is None else f", delay {median:.1f} s (90 % within {most:.1f} s)"
+    median, delay_90 = numbers["delay_median_s"], numbers["delay_90_s"]
+    delay = "" if median is None else f", delay {median:.1f} s (90 % within {delay_90:.1f} s)"
     return (
         f"{numbers['found']} of {numbers['events']} events ({names}) found at a threshold of "
         f"{numbers['threshold']:g}: {100 * recall['share']:.1f} % {interval}, {alarms}{delay}"
@@ -190,12 +190,12 @@ def _list_alarms(
     rows = list[tuple[object, ...]]()
     for recording in recordings:
         alarms = match_alarms(recording, options.event_threshold, column_s, options.alarms)
-        for event, start in zip(recording.events, alarms.found, strict=True):
+        for event, start in zip(recording.events, alarms.of_events, strict=True):
             times = [round(column * column_s, 6) for column in (event.start, event.stop)]
-            at = None if start is None else round(start * column_s, 6)
-            delay = None if at is None else round(at - times[0], 6)
-            rows.append((recording.name, names[event.label], *times, at, delay))
+            alarm_s = None if start is None else round(start * column_s, 6)
+            delay = None if alarm_s is None else round(alarm_s - times[0], 6)
+            rows.append((recording.name, names[event.label], *times, alarm_s, delay))
         for start in alarms.false:
-            at = round(start * column_s, 6)
-            rows.append((recording.name, "false alarm", None, None, at, None))
+            alarm_s = round(start * column_s, 6)
+            rows.append((recording.name, "false alarm", None, None, alarm_s, None))
     evaluation.table("alarms", ALARMS, rows)

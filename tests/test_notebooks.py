@@ -41,7 +41,7 @@ def test_a_notebook_is_stored_as_it_ran(path: Path) -> None:
     cells = [*code_cells(notebook)]
     assert [cell.execution_count for cell in cells] == [*range(1, len(cells) + 1)]
     assert all(output.output_type != "error" for cell in cells for output in cell.outputs)
-    assert sum("image/jpeg" in str(cell.outputs) for cell in cells) >= 2
+    assert sum("image/jpeg" in str(cell.outputs) for cell in cells) >= 1
     assert not re.search(r"(?<![\w.])/(home|root|tmp|usr|var|work|Users)/", printed(notebook))
     assert path.stat().st_size < MOST_BYTES
 

@@ -104,4 +104,4 @@ def test_pages_fetch_nothing_from_elsewhere_and_their_links_lead_somewhere(site:
 def test_notebooks_are_shown_with_their_pictures(notebook: Path, site: Path) -> None:
     shown = (site / f"guide/{notebook.stem}/index.html").read_text()
     pictures = notebook.read_text().count('"image/jpeg": "')
-    assert shown.count("data:image/jpeg") == pictures >= 2
+    assert shown.count("data:image/jpeg") == pictures >= 1

@@ -29,8 +29,11 @@ pytestmark = pytest.mark.slow
 
 def build(path: Path, folder: Path) -> None:
     """Build a config with a sample a class, or one of each person, and verify the data set."""
-    persons = next(iter(load_radars(path).values())).split.subjects
+    config = next(iter(load_radars(path).values()))
+    persons = config.split.subjects
     sets = ["--set", f"samples_per_class={persons or 1}"]
+    if config.stream is not None:
+        sets = ["--set", f"stream.count={persons or 1}", "--set", "duration_s=20"]
     if persons is None:
         sets += ["--set", "split={train: 1, validation: 0}"]
     ok("generate", path, "-o", folder / "set", *sets)

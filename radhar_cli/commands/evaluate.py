@@ -8,7 +8,7 @@ import typer
 from radhar_cli.commands.learning_options import Classes, Device, Resize, TrainedMap
 from radhar_cli.commands.options import ReplaceResults
 from radhar_cli.commands.tell import report, tell
-from radhar_cli.errors import FolderError
+from radhar_cli.errors import ConfigError, FolderError
 from radhar_cli.files.untrusted import read_json
 
 
@@ -50,6 +50,20 @@ def evaluate(
             "to S12).",
         ),
     ] = False,
+    events: Annotated[
+        str | None,
+        typer.Option(
+            metavar="CLASS,...",
+            help="Classes of frames that are one kind of event, such as falls: how many are found, "
+            "false alarms an hour, delays.",
+        ),
+    ] = None,
+    event_threshold: Annotated[
+        float, typer.Option(help="Probability of the events from which on there is an alarm.")
+    ] = 0.5,
+    event_tolerance: Annotated[
+        float, typer.Option(help="Time after an event until which an alarm is of it, s.")
+    ] = 5.0,
     batch: Annotated[int, typer.Option(min=1, help="Number of images per batch.")] = 32,
     resize: Resize = False,
     classes: Classes = None,
@@ -61,6 +75,8 @@ def evaluate(
     Example:
 
       radhar eval runs/quickstart datasets/quickstart --tsne
+
+      radhar eval runs/falls datasets/falls --events falling,falling_off_seat,falling_on_rising
 
     Each run is evaluated on each data set, for example to compare networks, or to test one that was
     trained at a single SNR at all others.
@@ -74,6 +90,7 @@ def evaluate(
     needs_torch()
     from radhar_cli.commands.terminal import BarProgress
     from radhar_cli.files.replacing import refuse_links
+    from radhar_cli.learning.event_metrics import AlarmRules
     from radhar_cli.learning.images.classes import read_classes
     from radhar_cli.learning.images.image_set import check_split_name
     from radhar_cli.learning.machine import choose_device
@@ -91,6 +108,9 @@ def evaluate(
         resize=resize,
         names=read_classes(classes),
         filters=filters,
+        events=() if events is None else _read_events(events),
+        event_threshold=_require_within("--event-threshold", event_threshold, 1e-6, 1),
+        alarms=AlarmRules(late_s=_require_within("--event-tolerance", event_tolerance, 0, 3600)),
     )
     inside = runs[0] if runs[0].is_dir() else runs[0].parent
     folder = out or inside / "eval"
@@ -106,6 +126,21 @@ def evaluate(
     files = {"page": folder / "report.html", "numbers": folder / "report.json"}
     report(**files, **main_scores(evaluation.numbers["runs"]))
     tell(f"{folder / 'report.html'}: {len(evaluation.figures)} figures; numbers in report.json")
+
+
+def _read_events(words: str) -> tuple[str, ...]:
+    """Names of classes, which commas separate, each once."""
+    names = tuple(dict.fromkeys(name.strip() for name in words.split(",")))
+    if "" in names:
+        raise ConfigError(f"--events = {words}: should be names of classes, separated by commas")
+    return names
+
+
+def _require_within(option: str, value: float, low: float, high: float) -> float:
+    """Value of an option; ConfigError if it is not within two ends."""
+    if not low <= value <= high:
+        raise ConfigError(f"{option} = {value:g}: should be from {low:g} to {high:g}")
+    return value
 
 
 def _refuse_another_report(folder: Path, about: dict[str, Any], replace: bool) -> None:

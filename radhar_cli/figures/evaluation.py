@@ -11,6 +11,7 @@ from matplotlib.ticker import FormatStrFormatter, LogLocator, MaxNLocator, NullF
 from numpy.typing import NDArray
 
 from radhar_cli.figures.page import page, png_bytes
+from radhar_cli.figures.style import SMALL
 from radhar_cli.numerics.arrays import Float, Index, Levels
 
 ACROSS = 4  # pictures in a row
@@ -264,6 +265,59 @@ def robustness_png(lines: Mapping[str, Sequence[Point]]) -> bytes:
     axes.set(ylabel="accuracy (%), 95 % interval", ylim=(0, 102))
     axes.grid(alpha=0.3)
     figure.legend(loc="outside right center")
+    return png_bytes(figure)
+
+
+@dataclass(frozen=True)
+class AlarmPoint:
+    """Share of the events that are found at a threshold, and false alarms an hour."""
+
+    threshold: float
+    recall: float
+    false_alarms_an_hour: float
+
+
+def alarms_png(
+    points: Sequence[AlarmPoint],
+    chosen: AlarmPoint,
+    recall_95: Sequence[float] | None,
+    false_alarms_95: Sequence[float] | None,
+    title: str,
+) -> bytes:
+    """Draw the share of events found over false alarms an hour, threshold by threshold.
+
+    Args:
+        points: one a threshold, by rising threshold.
+        chosen: the threshold that is reported.
+        recall_95: interval of its recall; None of too few groups.
+        false_alarms_95: interval of its false alarms; None of too few groups.
+        title: line above.
+
+    Returns:
+        The PNG file.
+    """
+    figure = page(7.0, 4.4)
+    axes = figure.subplots()
+    x, y = [p.false_alarms_an_hour for p in points], [100 * p.recall for p in points]
+    axes.plot(x, y, "o-", color="C0", markersize=4)
+    for point, alarms, recall in zip(points, x, y, strict=True):
+        look: dict[str, Any] = {"textcoords": "offset points", "fontsize": SMALL}
+        axes.annotate(f"{point.threshold:g}", (alarms, recall), xytext=(4, -9), **look)
+    middle = chosen.false_alarms_an_hour, 100 * chosen.recall
+    ends = (false_alarms_95, recall_95 and [100 * end for end in recall_95])
+    spread = [
+        None if pair is None else [[max(0.0, at - pair[0])], [max(0.0, pair[1] - at)]]
+        for at, pair in zip(middle, ends, strict=True)
+    ]
+    label = f"threshold {chosen.threshold:g}, 95 % intervals"
+    axes.errorbar(*middle, spread[1], spread[0], fmt="o", color="C3", capsize=3, label=label)
+    axes.set_xscale("symlog", linthresh=1)
+    axes.set(xlabel="false alarms an hour", ylabel="events found (%)", ylim=(-2, 104))
+    axes.set_xlim(left=-0.1)
+    axes.xaxis.set_major_formatter(FormatStrFormatter("%g"))
+    axes.grid(alpha=0.3)
+    axes.legend(loc="lower center")
+    axes.set_title(title)
     return png_bytes(figure)
 
 

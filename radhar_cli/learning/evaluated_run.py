@@ -19,6 +19,7 @@ from radhar_cli.learning.run_folder import (
     read_history,
     read_trained_on,
 )
+from radhar_cli.learning.tasks.frames import FrameLabels
 from radhar_cli.learning.tasks.predictions import EvalOptions
 from radhar_cli.numerics.arrays import Index
 
@@ -65,8 +66,24 @@ def check_options(runs: Sequence[Run], options: EvalOptions) -> None:
         if options.tsne and not run.metadata.reads_pictures:
             raise RunError(f"--tsne: {run.name} reads {run.metadata.input}; it is of images")
         run.metadata.task.check_options(run.name, options, run.metadata)
+        _check_events(run, options.events)
     if options.filters and not any(run.metadata.model == "fftnet" for run in runs):
         raise RunError("--filters: none of these networks has global filters; fftnet has six")
+
+
+def _check_events(run: Run, events: Sequence[str]) -> None:
+    """Refuse events of a network that does not label frames, and classes that it does not know."""
+    task = run.metadata.task
+    if events and not isinstance(task, FrameLabels):
+        raise RunError(
+            f"--events: {run.name} finds {task.finds}; events are found by a run of target: frames"
+        )
+    unknown = [name for name in events if name not in run.metadata.classes]
+    if unknown:
+        raise RunError(
+            f"--events = {unknown[0]}: is no class of {run.name}; should be of "
+            f"{', '.join(run.metadata.classes)}"
+        )
 
 
 def open_run(name: str, path: Path, device: torch.device) -> Run:

@@ -15,7 +15,7 @@ from statistics import NormalDist
 from typing import Any
 
 import numpy as np
-from scipy.special import stdtrit
+from scipy.special import gammaincinv, stdtrit
 
 from radhar_cli.numerics.arrays import Float, Index
 from radhar_cli.numerics.randomness import TRAINING, stream
@@ -90,6 +90,35 @@ def mean_interval(values: Float, group: Index, seed: int = 1) -> tuple[float, fl
     return mean - half, mean + half
 
 
+def rate_interval(
+    count: Float, exposure: Float, group: Index, seed: int = 1
+) -> tuple[float, float]:
+    """Interval (low, high) of 95 % of a rate, where counts of a group vary together.
+
+    It is that of F. Garwood ("Fiducial limits for the Poisson distribution", Biometrika 28, 1936)
+    of as much exposure as would vary so.
+
+    Args:
+        count: [N] number of events.
+        exposure: [N] such as hours, above 0 in sum.
+        group: [N] number of the person or recording that is drawn anew as a whole.
+        seed: seed of the draws.
+    """
+    groups, number = np.unique(group, return_inverse=True)
+    total, rate = float(exposure.sum()), float(count.sum() / exposure.sum())
+    by_group = [np.bincount(number, values) for values in (count, exposure)]
+    rng = stream(seed, TRAINING, name="bootstrap")
+    weights = rng.multinomial(groups.size, np.full(groups.size, 1 / groups.size), BOOTSTRAPS)
+    counts, exposures = (weights @ values for values in by_group)
+    rates = counts[exposures > 0] / exposures[exposures > 0]
+    variance = float(np.var(rates)) * groups.size / max(1, groups.size - 1)
+    if variance > 0:
+        total = min(total, rate / variance)
+    total *= _shrinkage(groups.size - 1)
+    low = float(gammaincinv(rate * total, 0.025)) / total if rate else 0.0
+    return low, float(gammaincinv(rate * total + 1, 0.975)) / total
+
+
 def variance_over_groups(values: Float, number: Index, stratum: Index, seed: int) -> float:
     """Variance of the mean over strata of the means of values, where groups are drawn anew.
 
@@ -143,6 +172,13 @@ def numbers_of_share(key: str, right: Float, groups: Groups) -> dict[str, Any]:
 def numbers_of_mean(key: str, values: Float, groups: Groups) -> dict[str, Any]:
     """Interval of a mean of values [N], as `numbers_of_share` gives that of a share."""
     interval = None if _are_too_few(groups) else list(mean_interval(values, groups.number))
+    return {f"{key}_95": interval, **_over(groups)}
+
+
+def numbers_of_rate(key: str, count: Float, exposure: Float, groups: Groups) -> dict[str, Any]:
+    """Interval of a rate of counts [N] per exposure [N], as `numbers_of_share` of a share."""
+    too_few = _are_too_few(groups)
+    interval = None if too_few else list(rate_interval(count, exposure, groups.number))
     return {f"{key}_95": interval, **_over(groups)}
 
 

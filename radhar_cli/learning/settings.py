@@ -158,6 +158,8 @@ class TrainConfig(Section):
     """Number of times an epoch shows an image of each of several data sets; null is once."""
     sampling: Literal["all", "balanced"] = "all"
     """Images of an epoch: all once, or balanced, every class equally often."""
+    class_weights: Literal["equal", "inverse_root"] = "equal"
+    """Weights of classes in the loss of target: frames: equal, or by 1/sqrt(share of columns)."""
     augment: AugmentConfig = AugmentConfig()
     device: Literal["auto", "cpu", "cuda", "mps"] = "auto"
     """Device of the network; auto takes cuda, mps, cpu in that order."""
@@ -204,6 +206,16 @@ class TrainConfig(Section):
         if networks_of_task and self.model not in networks_of_task:
             networks = " or ".join(networks_of_task)
             raise value_error(f"should have model: {networks} for target: {self.target}")
+        if self.class_weights != "equal" and self.target != "frames":
+            raise value_error(
+                f"should have class_weights: equal for target: {self.target}; sampling: balanced "
+                "shows rare classes more often"
+            )
+        if self.sampling == "balanced" and self.target == "frames":
+            raise value_error(
+                "should have sampling: all for target: frames, whose images have no class of their "
+                "own; class_weights: inverse_root weighs their columns"
+            )
         if self.augment != AugmentConfig() and sequences_of(self.model) is not None:
             raise value_error("should have no augment, which is of images")
         if self.augment != AugmentConfig() and self.input != "gray":

@@ -198,7 +198,7 @@ class _Training:
         self.config, self.images = config, images
         self.folder, self.progress = folder, progress
         self.history: list[Epoch] = []
-        task = create_task(config)
+        task = create_task(config).weighted_for(images)
         torch.manual_seed(config.seed)
         model = build_model(config.model, task.outputs(images), images.size)
         start = None if options.start is None else start_from(options.start, model, config, images)

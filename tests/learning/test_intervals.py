@@ -11,7 +11,9 @@ from radhar_cli.learning.intervals import (
     Groups,
     interval_in_words,
     mean_interval,
+    numbers_of_rate,
     numbers_of_share,
+    rate_interval,
     share_interval,
     wilson,
 )
@@ -128,3 +130,32 @@ def test_where_persons_are_the_classes_recordings_vary():
         np.arange(6), by_person=False
     )
     assert (groups.kind, groups.count) == ("recording", 3)
+
+
+def test_a_rate_without_events_has_the_upper_end_of_garwood():
+    """3.69 in all where hours are independent, more where they are of few persons."""
+    none, hours = np.zeros(1000), np.full(1000, 0.01)
+    low, high = rate_interval(none, hours, np.arange(1000))
+    assert low == 0
+    assert high == pytest.approx(3.689 / 10, rel=0.01)
+    assert rate_interval(none, hours, np.arange(1000) % 5)[1] > 1.5 * high
+
+
+@pytest.mark.parametrize("persons", [6, 12, 30])
+def test_intervals_of_rates_over_persons_cover_the_rate_of_others(persons):
+    """Persons have rates of their own, 2 an hour on average; each seen twice for half an hour."""
+    covered = 0
+    for seed in range(SETS):
+        rng = np.random.default_rng(seed)
+        rate = np.repeat(rng.gamma(2.0, 1.0, persons), 2)
+        hours = np.full(rate.size, 0.5)
+        low, high = rate_interval(
+            rng.poisson(rate * hours), hours, np.repeat(np.arange(persons), 2)
+        )
+        covered += low <= 2 <= high
+    assert covered > 0.9 * SETS
+
+
+def test_a_rate_of_few_persons_has_no_interval():
+    numbers = numbers_of_rate("an_hour", np.ones(8), np.ones(8), Groups(np.arange(8) % 4, "person"))
+    assert numbers == {"an_hour_95": None, "interval_over": {"kind": "person", "count": 4}}

@@ -3,6 +3,7 @@
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
+from radhar_cli.learning.event_metrics import AlarmRules
 from radhar_cli.learning.images.image_set import ImageSet, labels_for
 from radhar_cli.numerics.arrays import Float, Index
 
@@ -52,3 +53,6 @@ class EvalOptions:
     # {class of the data: class of the model, or None to leave it out}
     names: Mapping[str, str | None] = field(default_factory=dict)
     filters: bool = False  # draw the weights of global filters
+    events: tuple[str, ...] = ()  # classes of frames that are one kind of event, such as falls
+    event_threshold: float = 0.5  # score from which on there is an alarm
+    alarms: AlarmRules = field(default_factory=AlarmRules)

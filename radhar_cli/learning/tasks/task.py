@@ -134,6 +134,14 @@ class Task(ABC):
     def targets(self, images: ImageSet) -> Targets:
         """Targets [N, ...] of a set."""
 
+    def weighted_for(self, images: ImageSet) -> "Task":
+        """Task with the weights of classes that its settings ask for; itself where they are equal.
+
+        Args:
+            images: the set that is learned from, as `relabel` gives it.
+        """
+        return self
+
     def training_warnings(self, images: ImageSet) -> list[str]:
         """Warnings of a set that is learned from, in words."""
         return []

@@ -1,15 +1,12 @@
-"""The site builds without a warning, and its notebook runs."""
+"""The site builds without a warning, and shows the notebooks."""
 
 import os
 import re
 import subprocess
 import sys
-from collections.abc import Iterator
 from html.parser import HTMLParser
 from pathlib import Path
-from typing import Any
 
-import nbformat
 import pytest
 import run_notebook
 from helpers.command_line import ROOT
@@ -93,7 +90,7 @@ class _Addresses(HTMLParser):
 
 
 def test_pages_fetch_nothing_from_elsewhere_and_their_links_lead_somewhere(site: Path) -> None:
-    """Those of the notebook too, which MkDocs does not look at."""
+    """Those of the notebooks too, which MkDocs does not look at."""
     for page in {*site.rglob("*.html")} - {site / "404.html"}:
         addresses = _Addresses(page)
         for address in addresses.fetched + addresses.links:
@@ -103,23 +100,8 @@ def test_pages_fetch_nothing_from_elsewhere_and_their_links_lead_somewhere(site:
                 assert (page.parent / address.partition("#")[0]).exists(), (page, address)
 
 
-def code_cells(notebook: Any) -> Iterator[Any]:
-    return (cell for cell in notebook.cells if cell.cell_type == "code")
-
-
-def test_the_notebook_is_stored_as_it_ran(site: Path) -> None:
-    """Cells in order, without an error, and shown on the site."""
-    notebook = nbformat.read(run_notebook.NOTEBOOK, 4)
-    cells = [*code_cells(notebook)]
-    assert [cell.execution_count for cell in cells] == [*range(1, len(cells) + 1)]
-    assert all(out.output_type != "error" for cell in cells for out in cell.outputs)
-    shown = (site / "guide/first_hour/index.html").read_text()
-    assert shown.count("data:image/") >= 4
-
-
-@pytest.mark.filterwarnings("ignore::RuntimeWarning:zmq")
-def test_the_notebook_runs(tmp_path: Path) -> None:
-    *_, last = code_cells(run_notebook.executed(tmp_path))
-    lines = "".join(out.text for out in last.outputs).splitlines()
-    assert [line.split(":")[0] for line in lines] == ["recorded"] * 2
-    assert all(line.split("/")[0].split()[1] in line.split(": ")[2] for line in lines), lines
+@pytest.mark.parametrize("notebook", run_notebook.NOTEBOOKS, ids=lambda path: path.stem)
+def test_notebooks_are_shown_with_their_pictures(notebook: Path, site: Path) -> None:
+    shown = (site / f"guide/{notebook.stem}/index.html").read_text()
+    pictures = notebook.read_text().count('"image/jpeg": "')
+    assert shown.count("data:image/jpeg") == pictures >= 1

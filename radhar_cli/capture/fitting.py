@@ -95,6 +95,11 @@ class Fit:
         return [part for parts in self.recordings for part in parts]
 
     @property
+    def described(self) -> str:
+        """Data that the config was fitted to, in words."""
+        return f"{len(self.parts)} parts of recordings"
+
+    @property
     def snr_db(self) -> Float:
         """SNR of each recording in which somebody moves, dB.
 
@@ -122,6 +127,11 @@ class Fit:
         config_has_none = "; motion.place.range_m is not fitted" if doubtful == len(walked) else ""
         return f"{left_out}is unsure{config_has_none}"
 
+    @property
+    def notes(self) -> list[str]:
+        """Notes on what was chosen or left out."""
+        return [note for note in (self.remark, self.doubt) if note is not None]
+
     def numbers(self) -> dict[str, float]:
         """Summary of the estimates, and the noise floor, for which the config has no key.
 
@@ -140,6 +150,31 @@ class Fit:
             slope = float(theilslopes(floor, np.linspace(0, 1, floor.size)).slope)
             numbers["noise_over_range_db"] = slope
         return numbers
+
+    def draw(self, path: Path) -> None:
+        """Write a figure of the noise floor over range, if there are ranges, and of the SNRs."""
+        figure = page(10.0, 3.5)
+        axes = figure.subplots(1, 1 if self.ranges is None else 2, squeeze=False)
+        *floors, snrs = axes[0]
+        for floor in floors:
+            floor.plot(self.ranges, self.floor_db, label="measured")
+            floor.axhline(
+                0, color="k", linestyle="--", linewidth=0.8, label="fitted: the same everywhere"
+            )
+            floor.set(xlabel="range (m)", ylabel="noise floor (dB over its median)")
+            floor.legend()
+        snr, quantity = self.snr_db, "SNR of a raw sample (dB)"
+        if snr.size < LEAST_IN_BARS:
+            snrs.plot(np.arange(snr.size) + 1, snr, "o", label="of each recording")
+            snrs.axhline(snr.mean(), color="k", linestyle="--", label="mean")
+            snrs.set(xlabel="recording", ylabel=quantity, xticks=np.arange(snr.size) + 1)
+            snrs.set_xlim(0.5, snr.size + 0.5)
+        else:
+            snrs.hist(snr, bins=min(20, snr.size // 2), label="of each recording")
+            snrs.axvline(snr.mean(), color="k", linestyle="--", label="mean")
+            snrs.set(xlabel=quantity, ylabel="recordings")
+        snrs.legend()
+        write_figure(figure, path, 90)
 
     @cached_property
     def document(self) -> dict[str, Any]:
@@ -424,29 +459,3 @@ def _power_near(power: Float, near: Bool, noise: float) -> float:
         floor = noise if inside.all() else float(np.median(bins[~inside]))
         signal += float(np.sum(bins[inside] - floor))
     return signal / len(power)
-
-
-def draw(fit: Fit, path: Path) -> None:
-    """Write a figure of the noise floor over range, if there are ranges, and of the SNRs."""
-    figure = page(10.0, 3.5)
-    axes = figure.subplots(1, 1 if fit.ranges is None else 2, squeeze=False)
-    *floors, snrs = axes[0]
-    for floor in floors:
-        floor.plot(fit.ranges, fit.floor_db, label="measured")
-        floor.axhline(
-            0, color="k", linestyle="--", linewidth=0.8, label="fitted: the same everywhere"
-        )
-        floor.set(xlabel="range (m)", ylabel="noise floor (dB over its median)")
-        floor.legend()
-    snr, quantity = fit.snr_db, "SNR of a raw sample (dB)"
-    if snr.size < LEAST_IN_BARS:
-        snrs.plot(np.arange(snr.size) + 1, snr, "o", label="of each recording")
-        snrs.axhline(snr.mean(), color="k", linestyle="--", label="mean")
-        snrs.set(xlabel="recording", ylabel=quantity, xticks=np.arange(snr.size) + 1)
-        snrs.set_xlim(0.5, snr.size + 0.5)
-    else:
-        snrs.hist(snr, bins=min(20, snr.size // 2), label="of each recording")
-        snrs.axvline(snr.mean(), color="k", linestyle="--", label="mean")
-        snrs.set(xlabel=quantity, ylabel="recordings")
-    snrs.legend()
-    write_figure(figure, path, 90)

@@ -196,12 +196,13 @@ def ask_for_config(path: Path) -> None:
     """Ask for a config where a path holds clouds, which do not tell their board as signals do.
 
     Raises:
-        FolderError: it is a folder, a data set or a recording of points.
+        FolderError: it is a data set or a recording of points.
     """
-    if path.is_dir() or path.name == "dataset.h5" or is_point_recording(path):
+    is_data_set = (path / "dataset.h5").is_file() or path.name == "dataset.h5"
+    if is_data_set or (path.is_file() and is_point_recording(path)):
         raise FolderError(
-            f"{path}: holds clouds, if anything: --config should name a config of their board and "
-            "room, such as --config boards/iwr1443"
+            f"{path}: holds clouds; --config should name a config of their board and room, such as "
+            "--config boards/iwr1443"
         )
 
 

@@ -31,7 +31,7 @@ ADDRESS = re.compile(
 )
 
 
-def executed(path: Path, folder: Path, **sizes: int) -> Any:
+def execute_notebook(path: Path, folder: Path, **sizes: int) -> Any:
     """Return a notebook with its outputs; `radhar` is this Python's.
 
     Args:
@@ -89,7 +89,7 @@ def main() -> None:
             continue
         start = time.monotonic()
         with tempfile.TemporaryDirectory() as folder:
-            notebook = executed(path, Path(folder))
+            notebook = execute_notebook(path, Path(folder))
         store_as_jpeg(notebook)
         nbformat.write(notebook, path)
         print(f"{path.stem}: {time.monotonic() - start:.0f} s")

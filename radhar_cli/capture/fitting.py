@@ -95,7 +95,7 @@ class Fit:
         return [part for parts in self.recordings for part in parts]
 
     @property
-    def described(self) -> str:
+    def source(self) -> str:
         """Data that the config was fitted to, in words."""
         return f"{len(self.parts)} parts of recordings"
 

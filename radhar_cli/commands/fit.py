@@ -70,7 +70,7 @@ def fit(
         tell(f"  {key:<19} {value:.4g}")
     for note in fitted.notes:
         tell(f"warning: {note}", err=True)
-    text = f"# Fitted to {fitted.described}.\n"
+    text = f"# Fitted to {fitted.source}.\n"
     out.parent.mkdir(parents=True, exist_ok=True)
     write_text(out, text + yaml_text(fitted.document))
     fitted.draw(out.with_suffix(".png"))

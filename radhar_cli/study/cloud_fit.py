@@ -79,6 +79,11 @@ class CloudFit:
         """Noise figure at which the simulation has as many moving points as were measured, dB."""
         return figure_of(self.simulated_points, self.measured_points)
 
+    @property
+    def _nearest(self) -> int:
+        """Number of the noise figure that was tried nearest to the one that is found."""
+        return int(np.abs(FIGURES_DB - self.noise_figure_db).argmin())
+
     @cached_property
     def interval_db(self) -> tuple[float, float]:
         """95 % of noise figures of measured and simulated samples that are drawn again, dB."""
@@ -116,8 +121,7 @@ class CloudFit:
         if turned or elsewhere:
             return None
         middles = np.array([sample.middle for sample in self.measured])[:, :2]
-        index = int(np.abs(FIGURES_DB - self.noise_figure_db).argmin())
-        offsets = np.array([sample.offset[index] for sample in self.simulated])[:, :2]
+        offsets = np.array([sample.offset[self._nearest] for sample in self.simulated])[:, :2]
         if np.isnan(middles).all() or np.isnan(offsets).all():
             return None
         radar_m = np.array([nominal(part) for part in radar.position_m])[:2]
@@ -141,7 +145,7 @@ class CloudFit:
         ]
 
     @property
-    def described(self) -> str:
+    def source(self) -> str:
         """Data that the config was fitted to, in words."""
         return f"{len(self.measured)} samples of clouds"
 
@@ -164,11 +168,10 @@ class CloudFit:
         curve.axhline(self.measured_points, color="k", linestyle="--", label="measured")
         curve.axvspan(*self.interval_db, alpha=0.2, label="fitted, 95 %")
         curve.set(xlabel="noise figure (dB)", ylabel="moving points a frame")
-        index = int(np.abs(FIGURES_DB - self.noise_figure_db).argmin())
         sides: Mapping[str, Index] = {
             "measured": np.concatenate([sample.counts for sample in self.measured]),
-            f"simulated, {FIGURES_DB[index]:g} dB": np.concatenate(
-                [sample.counts[index] for sample in self.simulated]
+            f"simulated, {FIGURES_DB[self._nearest]:g} dB": np.concatenate(
+                [sample.counts[self._nearest] for sample in self.simulated]
             ),
         }
         top = max(int(np.percentile(side, 99)) for side in sides.values()) + 1
@@ -252,7 +255,7 @@ def _read_samples(path: Path) -> Iterator[MeasuredSample]:
     if path.is_file() and is_point_recording(path):
         with PointRecording(path) as recording:
             for begin in np.arange(0.0, max(recording.duration - WINDOW_S, 0) + 1e-9, WINDOW_S):
-                yield _measured(recording.window(float(begin), WINDOW_S))
+                yield sample_of(recording.window(float(begin), WINDOW_S))
         return
     with open_dataset(path) as data:
         if POINTS not in data.products:
@@ -260,15 +263,19 @@ def _read_samples(path: Path) -> Iterator[MeasuredSample]:
         points, starts = data.products[POINTS], data.products[f"{POINTS}_start"]
         step = -(-len(points) // MOST_SAMPLES)
         for row in range(0, len(points), step):
-            yield _measured(Cloud(points[row], starts[row]))
+            yield sample_of(Cloud(points[row], starts[row]))
 
 
-def _measured(cloud: Cloud) -> MeasuredSample:
+def sample_of(cloud: Cloud) -> MeasuredSample:
     """Moving points of each frame of a cloud, and the median of their places."""
     moving = cloud.points[:, 3] != 0  # unknown Doppler, NaN, is taken for movement
     counts = np.diff(np.concatenate([[0], np.cumsum(moving)])[cloud.start])
-    places = cloud.points[moving, :3]
-    return MeasuredSample(counts, np.median(places, axis=0) if len(places) else np.full(3, np.nan))
+    return MeasuredSample(counts, _median_place(cloud.points[moving, :3]))
+
+
+def _median_place(places: Float) -> Float:
+    """Median [3] of places [n, 3]; NaN of none."""
+    return np.median(places, axis=0) if len(places) else np.full(3, np.nan)
 
 
 def _simulate(config: Config, progress: Progress) -> list[SimulatedSample]:
@@ -287,9 +294,9 @@ def _simulate(config: Config, progress: Progress) -> list[SimulatedSample]:
         results = record(scene, ["echo", "cube", "skeletons"])
         echo, joints = results["echo"].cube, results["skeletons"].positions
         noise = results["cube"] - echo
-        centre = np.nanmedian(joints.reshape(-1, 3), axis=0)
+        centre = _median_place(joints[np.isfinite(joints).all(axis=-1)])  # an absent one is NaN
         by_figure = [
-            _measured(record(scene, ["cloud"], cube=echo + 10 ** (figure / 20) * noise)["cloud"])
+            sample_of(record(scene, ["cloud"], cube=echo + 10 ** (figure / 20) * noise)["cloud"])
             for figure in FIGURES_DB
         ]
         samples.append(

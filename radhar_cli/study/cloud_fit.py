@@ -79,7 +79,7 @@ class CloudFit:
         """Noise figure at which the simulation has as many moving points as were measured, dB."""
         return figure_of(self.simulated_points, self.measured_points)
 
-    @property
+    @cached_property
     def _nearest(self) -> int:
         """Number of the noise figure that was tried nearest to the one that is found."""
         return int(np.abs(FIGURES_DB - self.noise_figure_db).argmin())
